@@ -160,7 +160,7 @@ class Registration:
     unobserved: list[Unobserved]
     alternatives: list[Hypothesis]
     matches: list[PlaneMatch]
-    moved_planes: list[PlaneMatch]  # of a model: probably not built where it has them
+    moved_planes: list[PlaneMatch]  # not built where a model has them, or beside their counterparts
     openings: list[OpeningMatch]
     thickness: list[Thickness]
     stages: list[tuple[str, float]]  #: name and seconds

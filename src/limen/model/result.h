@@ -133,7 +133,9 @@ struct RegistrationResult {
   std::vector<UnobservedFreedom> unobserved;
   std::vector<Hypothesis> alternatives;  ///< different poses, best first, without `best`
   std::vector<PlaneMatch> matches;
-  std::vector<PlaneMatch> moved;  ///< of a model: planes that were probably not built where it has them
+  /// Planes of a model that were probably not built where it has them; of two scans, that lie beside their
+  /// counterparts.
+  std::vector<PlaneMatch> moved;
   std::vector<MatchedOpenings> openings;
   std::vector<MeasuredThickness> thickness;  ///< of the walls between the scans, most openings first
   std::size_t judged_poses = 0;              ///< poses that were refined and judged

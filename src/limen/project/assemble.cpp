@@ -367,7 +367,9 @@ class Assembler {
       const RegistrationResult& pair = pairs_[static_cast<std::size_t>(pair_of_[k])].result;
       stated.pair = pair.outcome;
       stated.reason = pair.reason;
-      note_change(stated);
+      note_change(link, stated);
+      if (!source.model && !target.model && stated.number == 0 && stated.solved.pose >= 0)
+        note_moved(link, pair.moved);
       // They are those of the pair's own best pose; of another one nothing is known.
       if (stated.number == 0) {
         stated.matches = pair.matches;
@@ -382,18 +384,33 @@ class Assembler {
   }
 
   /// A pair that is sure of its pose, beside which the solution puts its scans, shows that something changed.
-  void note_change(const ProjectLink& link) {
-    const bool sure = link.pair == Outcome::registered || link.pair == Outcome::probable;
-    const SolvedLink& solved = link.solved;
+  void note_change(const GraphLink& link, const ProjectLink& stated) {
+    const bool sure = stated.pair == Outcome::registered || stated.pair == Outcome::probable;
+    const SolvedLink& solved = stated.solved;
     if (!sure || solved.state != LinkState::rejected || solved.loop_error_m > kNoOtherPlaceM ||
         solved.loop_error_rad > kOtherPlaceRad)
       return;
     result_.notes.push_back(
         fmt::format("{} and {} alone fit {:.0f} mm and {:.2f} deg from where all scans together have them: "
                     "something was moved or rebuilt between the scans, or one of them is bent",
-                    scan_name(result_.scans[static_cast<std::size_t>(link.source)]),
-                    scan_name(result_.scans[static_cast<std::size_t>(link.target)]),
-                    1e3 * solved.loop_error_m, degrees(solved.loop_error_rad)));
+                    name_of(link.source), name_of(link.target), 1e3 * solved.loop_error_m,
+                    degrees(solved.loop_error_rad)));
+  }
+
+  /// So do planes that lie beside their counterparts, a door's leaf aside.
+  void note_moved(const GraphLink& link, const std::vector<PlaneMatch>& moved) {
+    constexpr double kNotedM2 = 1.0;
+    double most_m = 0.0;
+    double area_m2 = 0.0;
+    for (const PlaneMatch& plane : moved) {
+      most_m = std::max(most_m, std::abs(plane.distance_m));
+      area_m2 += plane.overlap_m2;
+    }
+    if (area_m2 < kNotedM2) return;
+    result_.notes.push_back(
+        fmt::format("planes of {:.1f} m2 lie up to {:.0f} mm beside one another in {} and {}: something was "
+                    "moved or rebuilt between the scans, and their accuracy allows for either side",
+                    area_m2, 1e3 * most_m, name_of(link.source), name_of(link.target)));
   }
 
   /// The distances of a pair's planes under the poses of the solution; none of passes that were bent.

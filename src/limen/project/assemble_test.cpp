@@ -12,7 +12,7 @@ namespace limen {
 namespace {
 
 /// Four scans in a row, every pair sure of its pose, the first of them off by so much.
-std::vector<std::string> notes_where_off(double off_m) {
+std::vector<std::string> notes_where_off(double off_m, double moved_m2 = 0.0) {
   std::vector<ProjectNode> nodes(4);
   ProjectResult result;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
@@ -31,6 +31,7 @@ std::vector<std::string> notes_where_off(double off_m) {
       pair.result.best.score = pair.result.best.agreeing_m2 = 30.0;
       pair.result.others = OtherExplanations{0.0, 0.0, 0.0};
       pair.result.sigma.centre = shift;
+      if (moved_m2 > 0.0 && pairs.empty()) pair.result.moved = {{0, 0, 0.06, 0.0, moved_m2}};
       pairs.push_back(pair);
     }
   }
@@ -45,6 +46,13 @@ TEST(Assemble, APairThatIsSureBesideTheOthersIsNoted) {
       noted += note.find("moved or rebuilt") != std::string::npos ? 1 : 0;
     EXPECT_EQ(noted, off_m == 0.06 ? 1U : 0U) << off_m;
   }
+}
+
+TEST(Assemble, PlanesBesideTheirCounterpartsAreNotedWhereTheyAreMoreThanADoorsLeaf) {
+  EXPECT_TRUE(notes_where_off(0.0, 0.5).empty());
+  const std::vector<std::string> notes = notes_where_off(0.0, 4.0);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("4.0 m2 lie up to 60 mm"), std::string::npos) << notes[0];
 }
 
 }  // namespace

@@ -43,6 +43,19 @@ bool is_work_order(const PreparedScan& source, const PreparedScan& target) {
   return !std::lexicographical_compare(others.begin(), others.end(), own.begin(), own.end(), comes_before);
 }
 
+RefineOptions refine_options(const ScanView& source, const ScanView& target, const RegisterOptions& options) {
+  constexpr double kGateSigmas = 4.0;  // of the sensor: surfaces nearer than that may be one
+  RefineOptions refine = options.refine;
+  refine.planes = refine.planes && options.method != Method::openings;
+  refine.openings = refine.openings && options.method != Method::polygons;
+  const double noise_m = std::max(source.features->noise_m, target.features->noise_m);
+  refine.last_gate_m =
+      std::min(refine.first_gate_m,
+               std::max({refine.last_gate_m, kGateSigmas * noise_m, 2.5 * drift_m(source, target)}));
+  if (options.wall_thickness_m > 0) refine.wall_thickness_m = options.wall_thickness_m;
+  return refine;
+}
+
 WorkedPair worked_pair(const PreparedPair& pair) {
   if (is_work_order(pair.source, pair.target)) return {pair.source, pair.target, false};
   return {pair.target, pair.source, true};
@@ -55,25 +68,11 @@ constexpr double kSettleStepM = 0.02;
 constexpr std::size_t kSettleLooks = 5;  // of those steps that get a look at everything
 constexpr double kCarefulGateM = 0.04;
 constexpr double kWidestGateM = 1.0;               // about a start
-constexpr double kGateSigmas = 4.0;                // of the sensor: surfaces nearer than that may be one
 constexpr std::size_t kPolished = 4;               // poses refined on every sample
 constexpr std::size_t kMostPolished = 24;          // in a model those that agree as well as ...
 constexpr double kAlikeShare = 0.9;                // ... the best, to this share
 constexpr int kModelPoses = 128;                   // refined at least where a scan is sought in a model
 constexpr std::size_t kModelRefineSamples = 1500;  // of each side, for all but the best of them
-
-/// What the method refines on, and how near surfaces have to be.
-RefineOptions refine_options(const ScanView& source, const ScanView& target, const RegisterOptions& options) {
-  RefineOptions refine = options.refine;
-  refine.planes = refine.planes && options.method != Method::openings;
-  refine.openings = refine.openings && options.method != Method::polygons;
-  const double noise_m = std::max(source.features->noise_m, target.features->noise_m);
-  refine.last_gate_m =
-      std::min(refine.first_gate_m,
-               std::max({refine.last_gate_m, kGateSigmas * noise_m, 2.5 * drift_m(source, target)}));
-  if (options.wall_thickness_m > 0) refine.wall_thickness_m = options.wall_thickness_m;
-  return refine;
-}
 
 /// Least squares may leave a good pose along a shift that hardly anything holds: then smaller steps are
 /// tried, and where they lead astray as well, the pose stays.

@@ -49,6 +49,9 @@ struct PreparedStart {
 
 std::optional<PreparedStart> prepared_start(const WorkedPair& pair, const RegisterOptions& options);
 
+/// What the method refines on, and how near surfaces have to be.
+RefineOptions refine_options(const ScanView& source, const ScanView& target, const RegisterOptions& options);
+
 /// Distinct poses of a pair between the upright frames, refined and scored, that of the best value first.
 /// Searched first with both scans upright and six freedoms held by three planes or openings; and only where
 /// nothing found so exceeds chance, with any tilt, and along planes that leave a shift open.

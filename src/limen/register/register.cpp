@@ -88,7 +88,7 @@ Matrix6d covariance_with_drift(const RefinedPose& pose, const ScanView& source, 
   const double shift_m = drift_m(source, target);
   const double turn_rad =
       shift_m / std::max(kDriftLengthM, common_length_m(pose, source, target) / kTurnOfWandering);
-  Matrix6d covariance = covariance_of(pose);
+  Matrix6d covariance = covariance_of(pose) + pose.spread;
   covariance.diagonal().head<3>().array() += turn_rad * turn_rad;
   covariance.diagonal().tail<3>().array() += shift_m * shift_m;
   return covariance;
@@ -243,7 +243,11 @@ void write_result(const std::vector<FoundPose>& poses, Posterior posterior, cons
                   const PreparedPair& pair, const WorkedPair& worked, const RegisterOptions& options,
                   RegistrationResult& result) {
   const std::size_t leader = posterior.order.front();
-  const FoundPose& upright = poses[leader];
+  FoundPose upright = poses[leader];
+  const ScanView source = worked.source.view();
+  const ScanView target = worked.target.view();
+  if (!worked.has_model())
+    find_moved(source, target, refine_options(source, target, options), upright.refined);
   const FoundPose best = as_given(upright, worked);
   for (std::size_t k = 1; k < posterior.order.size(); ++k) {
     if (is_slid(upright.refined, poses[posterior.order[k]].refined, options.verdict))
@@ -258,7 +262,7 @@ void write_result(const std::vector<FoundPose>& poses, Posterior posterior, cons
   if (result.outcome != Outcome::no_match) result.unobserved = open.list;
   const auto hypothesis = [&](std::size_t rank) {
     const std::size_t k = posterior.order[rank];
-    Hypothesis stated = to_hypothesis(as_given(poses[k], worked), pair);
+    Hypothesis stated = to_hypothesis(rank == 0 ? best : as_given(poses[k], worked), pair);
     stated.probability = posterior.probabilities[rank];
     stated.look_alike = asked.look_alike(k);
     return stated;

@@ -42,6 +42,20 @@ bool enter_themselves(const std::vector<MarkedPoint>& points, const GraphLink& l
          }) >= 3;
 }
 
+/// Whether a plane that two scans share faces as one that lies beside its counterpart: which of the two was
+/// moved is not known.
+bool may_have_moved(const PlaneMatch& match, const TriedPair& pair, const std::vector<ProjectNode>& nodes) {
+  constexpr double kFacesAlike = 0.7;
+  const ScanDigest& source = nodes[pair.source].digest;
+  if (source.model || nodes[pair.target].digest.model) return false;
+  const auto normal = [&](int plane) -> const Vector3d& {
+    return source.planes[static_cast<std::size_t>(plane)].plane.normal;
+  };
+  return std::any_of(pair.result.moved.begin(), pair.result.moved.end(), [&](const PlaneMatch& moved) {
+    return std::abs(normal(match.source).dot(normal(moved.source))) > kFacesAlike;
+  });
+}
+
 }  // namespace
 
 BentPasses passes_to_bend(const std::vector<ProjectNode>& nodes, const SolvedGraph& solved) {
@@ -91,7 +105,8 @@ JointProblem joint_problem(const std::vector<ProjectNode>& nodes, const std::vec
     if (made.pair_of[k] >= 0 && solved.links[k].pose == link.best) {
       const TriedPair& pair = pairs[static_cast<std::size_t>(made.pair_of[k])];
       for (const PlaneMatch& match : pair.result.matches) {
-        if (match.overlap_m2 >= kSharedM2) shared.join(link, match, edge.pose.target_from_source);
+        if (match.overlap_m2 >= kSharedM2 && !may_have_moved(match, pair, nodes))
+          shared.join(link, match, edge.pose.target_from_source);
       }
       for (const bool source : {true, false}) {
         int& node = source ? edge.source : edge.target;

@@ -75,7 +75,8 @@ void transfer(auto& bytes, Is<OtherExplanations> auto& others) {
 
 void transfer(auto& bytes, Is<RegistrationResult> auto& result) {
   bytes(result.outcome, result.reason, result.best, result.sigma, result.unobserved, result.alternatives,
-        result.matches, result.openings, result.thickness, result.judged_poses, result.rivals, result.others);
+        result.matches, result.moved, result.openings, result.thickness, result.judged_poses, result.rivals,
+        result.others);
   bytes.require(is_value(result.outcome, Outcome::no_match));
 }
 
@@ -152,8 +153,10 @@ RegistrationResult result_from(std::string_view bytes, const std::string& where,
   reader(result);
   const FeatureCounts& source = counts.source;
   const FeatureCounts& target = counts.target;
-  for (const PlaneMatch& match : result.matches)
-    reader.require(is_place(match.source, source.planes) && is_place(match.target, target.planes));
+  for (const std::vector<PlaneMatch>* matches : {&result.matches, &result.moved}) {
+    for (const PlaneMatch& match : *matches)
+      reader.require(is_place(match.source, source.planes) && is_place(match.target, target.planes));
+  }
   for (const MatchedOpenings& match : result.openings)
     reader.require(is_place(match.source, source.openings) && is_place(match.target, target.openings));
   for (const MeasuredThickness& wall : result.thickness)

@@ -178,12 +178,15 @@ SettledPose settle_among_moved(const std::vector<PlaneSums>& planes, double slop
   for (double& weight : weights) weight = std::exp(weight - most);
   const double all = std::accumulate(weights.begin(), weights.end(), 0.0);
   Matrix6d covariance = Matrix6d::Zero();
+  Matrix6d spread = Matrix6d::Zero();
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const Vector6d off = modes[k].step - modes[best].step;
     covariance += weights[k] / all * (covariances[k] + off * off.transpose());
+    const Vector6d off_first = modes[k].step - modes.front().step;
+    spread += weights[k] / all * off_first * off_first.transpose();
   }
   const Matrix6d information = modes.size() == 1 ? modes[best].information : inverse_of(covariance);
-  return {modes[best].step, information, modes[best].moved};
+  return {modes[best].step, information, modes[best].moved, spread};
 }
 
 }  // namespace limen

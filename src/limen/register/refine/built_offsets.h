@@ -57,6 +57,8 @@ struct SettledPose {
   /// With what other such poses say, weighted by how likely they are.
   Matrix6d information = Matrix6d::Zero();
   std::vector<double> moved;  ///< of each plane, the probability that it was moved
+  /// Mean square by which such poses differ from the one that was given.
+  Matrix6d spread = Matrix6d::Zero();
 };
 
 /// The likeliest pose in a building of which each plane either is where the model has it, to the few

@@ -23,6 +23,10 @@ constexpr double kWeakShare = 1e-4;     // of the information: less is the plane
 constexpr double kMaxCentreM = 20.0;    // the best known point is sought this far from the matched surface
 constexpr int kLeastTilted = 8;         // tiles of a pair whose slopes are looked at
 constexpr double kMovedGateM = 0.06;    // as far as walls are looked for that were moved
+constexpr double kBesideGateM = 0.15;   // the same in two scans: two walls may both be lined
+constexpr double kBesideM2 = 0.5;       // less may be furniture that stands elsewhere
+constexpr double kBesideRad = 0.02;     // a plane that was moved keeps its direction
+constexpr double kBesideShare = 0.3;    // of it: so much that is met where it is was not moved
 constexpr double kOpeningErrsM = 0.02;  // how far windows and doors are from where a model has them: 1 sigma
 constexpr double kWholePlaneM2 = 5.0;   // one observation of how a building was built
 constexpr double kOneOffsetM = 0.006;   // parts of one plane that differ by less were moved together
@@ -70,7 +74,38 @@ class Refiner {
     return refined;
   }
 
+  void find_moved(RefinedPose& refined) const {
+    const double gate = std::max(kBesideGateM, 2.0 * options_.last_gate_m);
+    std::vector<Contact> contacts;
+    for (const Contact& contact :
+         contacts_.near(refined.target_from_source, {gate, options_.last_opening_gate_m}).all) {
+      if (contact.source_plane >= 0) contacts.push_back(contact);
+    }
+    PairMap pairs = pairs_of(contacts, refined.centre);
+    MetAreas met;
+    for (const auto& [key, pair] : pairs) {
+      if (!is_met(pair)) continue;
+      met.source[key.first] += pair.area_m2;
+      met.target[key.second] += pair.area_m2;
+    }
+    for (auto it = pairs.begin(); it != pairs.end();)
+      it = is_met(it->second) || lies_beside(*it, met, refined) ? std::next(it) : pairs.erase(it);
+    for (const auto& [key, pair] : pairs) {
+      if (!is_met(pair) && pair.area_m2 >= kBesideM2)
+        refined.moved.push_back(
+            {key.first, key.second, pair.distance / pair.area_m2, angle_of(key, refined), pair.area_m2});
+    }
+    by_overlap(refined.moved);
+    if (!refined.moved.empty()) refined.spread = settled_among(pairs, {}, scatter_of(pairs)).spread;
+  }
+
  private:
+  /// Surface of each plane that is met where it is.
+  struct MetAreas {
+    std::map<int, double> source;
+    std::map<int, double> target;
+  };
+
   static Vector3d middle_of(const std::vector<Contact>& contacts) {
     Vector3d sum = Vector3d::Zero();
     for (const Contact& contact : contacts) sum += contact.at;
@@ -201,6 +236,47 @@ class Refiner {
     std::vector<PlaneMatch> moved;
   };
 
+  template <typename Pair>
+  [[nodiscard]] bool is_met(const Pair& pair) const {
+    return std::abs(pair.mean_m()) <= options_.last_gate_m;
+  }
+
+  /// A pair of planes seen from the same side, of which neither is met elsewhere.
+  [[nodiscard]] bool lies_beside(const PairMap::value_type& pair, MetAreas& met,
+                                 const RefinedPose& refined) const {
+    const auto& [source, target] = pair.first;
+    const PlanarPolygon& first = source_.features->planes[static_cast<std::size_t>(source)];
+    const PlanarPolygon& second = target_.features->planes[static_cast<std::size_t>(target)];
+    const double cosine = (refined.target_from_source.rotation * first.plane.normal).dot(second.plane.normal);
+    return first.oriented && second.oriented && cosine > 0.0 && angle_of(pair.first, refined) < kBesideRad &&
+           std::max(met.source[source], met.target[target]) < kBesideShare * pair.second.area_m2;
+  }
+
+  /// Variance of the tiles about the mean of their pair, in those that the weights state.
+  static double scatter_of(const PairMap& pairs) {
+    double squares = 0.0;
+    double tiles = 0.0;
+    for (const auto& [key, pair] : pairs) {
+      squares += pair.squares - pair.residuals[0] * pair.residuals[0] / pair.weight;
+      tiles += pair.tiles;
+    }
+    const double freedoms = 0.5 * tiles - static_cast<double>(pairs.size());
+    return std::max(squares / std::max(1.0, freedoms), 1e-6);
+  }
+
+  /// The likeliest pose near the one under which `pairs` were found, given that some planes may have been
+  /// moved. `openings`: what these say of shifts; `factor`: of the variances that the weights are made with.
+  static SettledPose settled_among(const PairMap& pairs, const std::vector<PlaneSums>& openings,
+                                   double factor) {
+    std::vector<PlaneSums> planes;
+    for (const auto& [key, pair] : pairs) {
+      planes.push_back(pair);
+      planes.back().counts = std::min(1.0, pair.area_m2 / kWholePlaneM2);
+    }
+    planes.insert(planes.end(), openings.begin(), openings.end());
+    return settle_among_moved(planes, pair_slope(pairs, factor), factor);
+  }
+
   [[nodiscard]] const Features& model_features() const {
     return *(source_.model ? source_ : target_).features;
   }
@@ -290,18 +366,9 @@ class Refiner {
     const Vector3d centre = middle_of(contacts);
     join_pairs(contacts, centre, walls);
     const PairMap pairs = pairs_of(contacts, centre);
-    double squares = 0.0;
-    std::vector<PlaneSums> planes;
-    for (const auto& [key, pair] : pairs) {
-      planes.push_back(pair);
-      planes.back().counts = std::min(1.0, pair.area_m2 / kWholePlaneM2);
-      squares += pair.squares - pair.residuals[0] * pair.residuals[0] / pair.weight;
-    }
-    const double freedoms = 0.5 * static_cast<double>(contacts.size()) - static_cast<double>(pairs.size());
-    const double factor = std::max(squares / std::max(1.0, freedoms), 1e-6);
-    for (const PlaneSums& openings : opening_sums(found, refined.target_from_source, centre, factor, walls))
-      planes.push_back(openings);
-    const SettledPose settled = settle_among_moved(planes, pair_slope(pairs, factor), factor);
+    const double factor = scatter_of(pairs);
+    const SettledPose settled =
+        settled_among(pairs, opening_sums(found, refined.target_from_source, centre, factor, walls), factor);
     move_by(settled.step, centre, refined.target_from_source);
     Settled known{settled.information, centre, {}};
     std::size_t k = 0;
@@ -490,7 +557,7 @@ RefinedPose inverted(const RefinedPose& pose) {
   Matrix6d turn = Matrix6d::Zero();
   turn.topLeftCorner<3, 3>() = back.target_from_source.rotation;
   turn.bottomRightCorner<3, 3>() = back.target_from_source.rotation;
-  for (Matrix6d* held : {&back.information, &back.geometry_m2, &back.formal_information})
+  for (Matrix6d* held : {&back.information, &back.geometry_m2, &back.formal_information, &back.spread})
     *held = turn * *held * turn.transpose();
   for (std::vector<PlaneMatch>* matches : {&back.matches, &back.moved}) {
     for (PlaneMatch& match : *matches) {
@@ -506,6 +573,12 @@ RefinedPose refine_pose(const ScanView& source, const ScanView& target, const Ri
                         const RefineOptions& options) {
   options.check();
   return Refiner(source, target, options).run(start);
+}
+
+void find_moved(const ScanView& source, const ScanView& target, const RefineOptions& options,
+                RefinedPose& pose) {
+  options.check();
+  Refiner(source, target, options).find_moved(pose);
 }
 
 }  // namespace limen

@@ -21,7 +21,12 @@ struct RefinedPose {
   double rms_m = 0.0;                              ///< weighted point-to-plane residual
   std::vector<PlaneMatch> matches;                 ///< pairs of planes with at least two matched tiles
   std::vector<OpeningMatch> openings;              ///< pairs of openings, at the final pose
-  std::vector<PlaneMatch> moved;  ///< planes of a model that were probably not built where it has them
+  /// Planes of a model that were probably not built where it has them; of two scans, planes that lie beside
+  /// their counterparts.
+  std::vector<PlaneMatch> moved;
+  /// Mean square by which poses about `centre` differ that take other planes for the moved ones; of a model
+  /// it is part of the information.
+  Matrix6d spread = Matrix6d::Zero();
 };
 
 /// Covariance of (rotation, translation) about `pose.centre`, target axes, SI; a freedom that nothing holds
@@ -42,5 +47,11 @@ RefinedPose inverted(const RefinedPose& pose);
 /// the faces (2023, III-B).
 RefinedPose refine_pose(const ScanView& source, const ScanView& target, const Rigid3& start,
                         const RefineOptions& options);
+
+/// Finds the planes of two scans that lie centimetres beside their counterparts under a refined pose, as
+/// where a floor was laid or a wall was lined between the scans: `moved` and `spread` of the pose. Which
+/// planes moved is not known, so that every pose that has most of them in place is likely.
+void find_moved(const ScanView& source, const ScanView& target, const RefineOptions& options,
+                RefinedPose& pose);
 
 }  // namespace limen

@@ -73,6 +73,46 @@ TEST(RefinePose, WallsThatLeanEachOnItsOwnAreInTheDeviationOfTurns) {
   EXPECT_GT(squares.stated, 0.2);
 }
 
+/// The box after a floor was laid on its floor.
+Scan with_raised_floor(Scan box, double raised_m) {
+  for (Vector3d& x : box.points) {
+    if (x.z() < -1.49) x.z() += raised_m;
+  }
+  return box;
+}
+
+/// A box against itself as it is after the floor was raised.
+RefinedPose pose_after_raising(double raised_m) {
+  const Scan box = box_scan(40000, -1.2, 1.5);
+  const PrepareOptions options = prepare_options({});
+  const PreparedScan source = prepare_scan(box, options);
+  const PreparedScan target = prepare_scan(with_raised_floor(box, raised_m), options);
+  const Matrix3d rotation = target.upright_from_scan * source.upright_from_scan.transpose();
+  const Vector3d shift = source.extracted.features.local_origin - target.extracted.features.local_origin;
+  RefinedPose pose =
+      refine_pose(source.view(), target.view(), {rotation, target.upright_from_scan * shift}, {});
+  find_moved(source.view(), target.view(), {}, pose);
+  return pose;
+}
+
+TEST(RefinePose, AFloorThatWasRaisedBetweenTheScansLeavesTheHeightOpenByAsMuch) {
+  for (const double raised_m : {0.04, 0.06}) {
+    const RefinedPose pose = pose_after_raising(raised_m);
+    ASSERT_EQ(pose.moved.size(), 1u) << raised_m;
+    EXPECT_NEAR(std::abs(pose.moved[0].distance_m), raised_m, 0.003);
+    const Vector3d deviation = pose.spread.diagonal().tail<3>().cwiseSqrt();
+    EXPECT_GT(deviation.z(), 0.4 * raised_m);
+    EXPECT_LT(deviation.z(), raised_m);
+    EXPECT_LT(deviation.head<2>().norm(), 0.001);
+  }
+}
+
+TEST(RefinePose, OfARoomThatIsAsItWasNothingIsMoved) {
+  const RefinedPose pose = pose_after_raising(0.0);
+  EXPECT_TRUE(pose.moved.empty());
+  EXPECT_TRUE(pose.spread.isZero(0.0));
+}
+
 /// A wall's windows, `columns` side by side and `rows` above one another, their sides known to 4 cm.
 Features windows(int columns, int rows) {
   Features features;

@@ -146,14 +146,29 @@ bool has_report(const RegistrationReport& report) {
   return report.result.picture != nullptr;
 }
 
+double most_moved_mm(const std::vector<PlaneMatch>& moved) {
+  double most_m = 0.0;
+  for (const PlaneMatch& plane : moved) most_m = std::max(most_m, std::abs(plane.distance_m));
+  return 1e3 * most_m;
+}
+
 /// Planes of a model that were probably built elsewhere, where there are any.
 std::string moved_words(const std::vector<PlaneMatch>& moved) {
   if (moved.empty()) return {};
-  double most_m = 0.0;
-  for (const PlaneMatch& plane : moved) most_m = std::max(most_m, std::abs(plane.distance_m));
   const bool one = moved.size() == 1;
   return fmt::format("{} plane{} of the model {} up to {:.0f} mm from where {} built; ", moved.size(),
-                     one ? "" : "s", one ? "is" : "are", 1e3 * most_m, one ? "it was" : "they were");
+                     one ? "" : "s", one ? "is" : "are", most_moved_mm(moved), one ? "it was" : "they were");
+}
+
+/// Of two scans what lies beside its counterpart, where there is any.
+void add_step_of_moved(const RegistrationReport& report, std::vector<std::string>& steps) {
+  const std::vector<PlaneMatch>& moved = report.result.moved;
+  if (moved.empty() || in_model(report)) return;
+  steps.push_back(fmt::format(
+      "find out what was moved or rebuilt between the scans: {} up to {:.0f} mm beside {}; the stated "
+      "accuracy allows for either side having moved",
+      moved.size() == 1 ? "1 plane lies" : fmt::format("{} planes lie", moved.size()), most_moved_mm(moved),
+      moved.size() == 1 ? "its counterpart" : "their counterparts"));
 }
 
 std::vector<std::string> steps_registered(const RegistrationReport& report, const std::string& folder) {
@@ -172,6 +187,7 @@ std::vector<std::string> steps_registered(const RegistrationReport& report, cons
                     moved_words(report.result.moved), shell_word(scan.path), shell_word(model.path),
                     in_folder(folder, "result.json"), source_is_model ? " --inverse" : ""));
   }
+  add_step_of_moved(report, steps);
   return steps;
 }
 
@@ -240,6 +256,7 @@ std::vector<std::string> steps_open(const RegistrationReport& report, const std:
   if (report.source.mobile != report.target.mobile && report.result.thickness.empty() &&
       !report.result.openings.empty())
     steps.push_back("if the thickness of the outer wall is known, give --wall-thickness-m");
+  add_step_of_moved(report, steps);
   return steps;
 }
 

@@ -67,6 +67,15 @@ TEST(Advice, AProbablePoseNamesWhatWouldMakeItSurer) {
   EXPECT_TRUE(any_names(next_steps(report, "out"), "limen transform out/result.json"));
 }
 
+TEST(Advice, PlanesBesideTheirCounterpartsAreToBeLookedInto) {
+  for (const Outcome outcome : {Outcome::registered, Outcome::probable, Outcome::under_constrained}) {
+    RegistrationReport report = pair_of(outcome);
+    EXPECT_FALSE(any_names(next_steps(report, "out"), "rebuilt"));
+    report.result.moved = {{0, 0, 0.02, 0.0, 5.0}, {1, 1, -0.06, 0.0, 2.0}};
+    EXPECT_TRUE(any_names(next_steps(report, "out"), "2 planes lie up to 60 mm")) << to_string(outcome);
+  }
+}
+
 TEST(Advice, CommandsCanBeTakenAsTheyStand) {
   const RegistrationReport found = pair_of(Outcome::registered);
   EXPECT_TRUE(
