@@ -65,6 +65,38 @@ TEST_F(CloudsTest, ThinOfFewPointsKeepsThemAll) {
   EXPECT_EQ(info("all.ply")["scans"][0]["points"], 400);
 }
 
+TEST_F(CloudsTest, ThinToE57KeepsEachScanAndItsScanner) {
+  std::string text;
+  for (const int x : {1000, 1030}) {
+    text += "40\n20\n" + std::to_string(x) + " 2000 50\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n" +
+            std::to_string(x) + " 2000 50 1\n";
+    for (int i = 0; i < 800; ++i)
+      text += std::to_string(0.2 * (i % 20)) + " " + std::to_string(0.1 * static_cast<int>(i / 20)) +
+              " -1.5 0.5\n";
+  }
+  write_whole(work() / "two.ptx", text);
+  for (const std::vector<std::string>& how :
+       {std::vector<std::string>{"--points", "600"}, {"--spacing-m", "0.3"}, {"--points", "10000"}}) {
+    ASSERT_EQ(run({"thin", "two.ptx", "two.e57", how[0], how[1]}).status, 0);
+    const Json scans = info("two.e57")["scans"];
+    ASSERT_EQ(scans.size(), 2U) << how[1];
+    int points = 0;
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_EQ(scans[k]["scanner"]["place"][0], k == 0 ? 1000.0 : 1030.0);
+      points += scans[k]["points"].get<int>();
+    }
+    EXPECT_LE(points, how[0] == "--points" ? std::stoi(how[1]) : 1600) << how[1];
+  }
+}
+
+TEST_F(CloudsTest, ThinSaysThatTheMemoryAllowsFewerThanAsked) {
+  write_floor("floor.csv", 300);
+  const ProgramRun small = run({"thin", "floor.csv", "out.ply", "--points", "80000", "--memory", "1M"});
+  EXPECT_NE(small.err.find("--memory 1M allows no more"), std::string::npos) << small.err;
+  const ProgramRun large = run({"thin", "floor.csv", "out.ply", "--points", "80000", "--memory", "1G"});
+  EXPECT_EQ(large.err.find("--memory"), std::string::npos) << large.err;
+}
+
 TEST_F(CloudsTest, ThinSaysWhatIsWrong) {
   write_floor("floor.csv", 20);
   EXPECT_NE(run({"thin", "floor.csv", "out.ply"}).err.find("--points"), std::string::npos);

@@ -8,7 +8,7 @@
 #include "work.h"
 
 #include "limen/base/atomic_file.h"
-#include "limen/io/cloud/point_sample.h"
+#include "limen/io/cloud/point_print.h"
 #include "limen/model/plausible_size.h"
 #include "limen/register/register.h"
 #include "limen/report/html/html_report.h"
@@ -143,9 +143,8 @@ Registered register_sides(const PythonSide& source, const PythonSide& target, Re
     }
   }
   if (!from.scans.empty() && !to.scans.empty()) {
-    const Scan& scan = from.scans.front().scan;
     const std::string note =
-        same_points_note(PointSample(scan), point_marks(scan), to.scans.front().scan);
+        same_points_note(print_of(from.scans.front().scan), print_of(to.scans.front().scan));
     if (!note.empty()) report.notes.push_back(note);
   }
   if (const auto& picture = report.result.picture)

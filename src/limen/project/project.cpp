@@ -10,7 +10,7 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/base/progress.h"
-#include "limen/io/cloud/point_sample.h"
+#include "limen/io/cloud/point_print.h"
 #include "limen/io/trajectory/read_trajectory.h"
 #include "limen/model/plausible_size.h"
 #include "limen/project/assemble.h"
@@ -108,12 +108,13 @@ class Run {
     const auto name = [&](std::size_t k) { return scan_name(result_.scans[nodes_[k].scan]); };
     for (std::size_t b = 0; b < nodes_.size(); ++b) {
       for (std::size_t a = 0; a < b; ++a) {
+        if (nodes_[a].digest.model || nodes_[b].digest.model) continue;
         const auto [less, more] =
             std::minmax(a, b, [&](std::size_t i, std::size_t j) { return points_of(i) < points_of(j); });
-        if (points_of(a) == points_of(b) && share_points(a, b))
+        if (same_points(prints_[a], prints_[b]))
           note(fmt::format("{} and {} seem to hold the same {} points: leave one of them out", name(a),
                            name(b), points_of(a)));
-        else if (points_of(less) < points_of(more) && is_part_of(marks_[less], marks_[more]))
+        else if (points_of(less) < points_of(more) && is_part_of(prints_[less], prints_[more]))
           note(fmt::format(
               "{} holds only points of {}, of which it seems a thinned copy or a part: leave one of them out",
               name(less), name(more)));
@@ -133,14 +134,6 @@ class Run {
                       "{:.1f} and {:.1f} s, or its points are far away",
                       file, trajectory.first_s(), trajectory.last_s()));
     }
-  }
-
-  /// By the pictures of both, which are made alike of the same points.
-  [[nodiscard]] bool share_points(std::size_t a, std::size_t b) const {
-    if (nodes_[a].digest.model || nodes_[b].digest.model) return false;
-    const std::optional<Scan> one = store_.load_picture(nodes_[a].key, kMostPictured);
-    const std::optional<Scan> other = store_.load_picture(nodes_[b].key, kMostPictured);
-    return one && other && PointSample(*one).share_in(*other) > kShareOfCopies;
   }
 
   [[nodiscard]] std::size_t points_of(std::size_t node) const {
@@ -264,7 +257,7 @@ class Run {
       scan.points = record.points[k];
       result_.scans.push_back(std::move(scan));
       nodes_.push_back(std::move(node));
-      marks_.push_back(k < record.marks.size() ? record.marks[k] : std::vector<std::uint64_t>{});
+      prints_.push_back(record.prints[k]);
     }
     settle_group(first);
   }
@@ -387,7 +380,6 @@ class Run {
   }
 
   static constexpr double kOnePlaceM = 0.05;
-  static constexpr double kShareOfCopies = 0.8;  ///< rounding may choose another point for a picture
   static constexpr std::size_t kQueriedInMemory = 32;
 
   ProjectInputs inputs_;
@@ -401,7 +393,7 @@ class Run {
   UserWords words_;
   ProjectStatus status_;
   std::vector<ProjectNode> nodes_;
-  std::vector<std::vector<std::uint64_t>> marks_;  ///< of the nodes, as they were read
+  std::vector<PointPrint> prints_;  ///< of the nodes, as they were read
   ProjectResult result_;
 };
 

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -7,6 +9,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/guarded_mapping.h"
+#include "limen/base/text.h"
 #include "limen/cli/commands/commands.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/io/cloud/open_points.h"
@@ -15,6 +18,8 @@
 
 namespace limen {
 namespace {
+
+constexpr double kLeastOfAsked = 0.7;  // of --points, as the documentation has it
 
 struct ThinCommand {
   std::string cloud;
@@ -48,13 +53,24 @@ int run(ThinCommand command, const Session& session) {
   const std::vector<PlacedCloud> placed = placed_clouds(input, {});
   const double unit = require_one_unit(placed, command.output);
   command.thinning.spacing_m /= unit;
-  const JoinedClouds clouds(placed, input.file().clouds().size() > 1);
+  const JoinedClouds clouds(placed, placed.size() > 1);
   const bool few = command.thinning.spacing_m == 0.0 && command.thinning.most_points > 0 &&
                    clouds.plan().most_points <= command.thinning.most_points;
+  const bool stations =
+      placed.size() > 1 && lower_case(std::filesystem::path(command.output).extension().string()) == ".e57";
   WrittenClouds written = with_whole_inputs([&] {
-    return few ? write_clouds(clouds, command.output, *session.monitor)
-               : write_thinned(clouds, command.thinning, command.output, *session.monitor);
+    Monitor& monitor = *session.monitor;
+    if (stations)
+      return few ? write_stations(placed, command.output, monitor)
+                 : write_thinned_stations(placed, command.thinning, command.output, monitor);
+    return few ? write_clouds(clouds, command.output, monitor)
+               : write_thinned(clouds, command.thinning, command.output, monitor);
   });
+  const std::uint64_t asked = std::min(command.thinning.most_points, written.read);
+  if (command.thinning.memory_bytes > 0 &&
+      static_cast<double>(written.written) < kLeastOfAsked * static_cast<double>(asked))
+    written.notes.push_back(
+        fmt::format("--memory {} allows no more than {} points", command.memory, written.written));
   written.spacing_m *= unit;
   for (const std::string& note : written.notes) session.note(note);
   std::string text = fmt::format("{} of {} points kept", written.written, written.read);

@@ -37,11 +37,10 @@ std::string SamePointsWatch::note_on(const RegisterInput& side, bool is_source) 
   if (side.scans.empty()) return {};
   const Scan& scan = side.scans.front().scan;
   if (is_source) {
-    sample_ = PointSample(scan);
-    marks_ = point_marks(scan);
+    of_source_ = print_of(scan);
     if (same_bytes(source_, target_)) return note_ = same_points_note(scan.size());
   } else if (note_.empty()) {
-    return note_ = same_points_note(sample_, marks_, scan);
+    return note_ = same_points_note(of_source_, print_of(scan));
   }
   return {};
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "limen/cli/terminal/command.h"
-#include "limen/io/cloud/point_sample.h"
+#include "limen/io/cloud/point_print.h"
 #include "limen/io/cloud/read_scan.h"
 #include "limen/register/prepare/prepare_scan.h"
 #include "limen/register/register.h"
@@ -35,8 +35,7 @@ class SamePointsWatch {
  private:
   std::string source_;
   std::string target_;
-  PointSample sample_;                ///< of the source
-  std::vector<std::uint64_t> marks_;  ///< of the source
+  PointPrint of_source_;
   std::string note_;
 };
 

@@ -167,11 +167,19 @@ bool is_copied(const OpenPoints& input, const std::filesystem::path& output) {
   return input.format() == PointFormat::e57 && lower_case(output.extension().string()) == ".e57";
 }
 
+namespace {
+
+std::uint64_t points_of(const std::vector<PlacedCloud>& stations) {
+  std::uint64_t total = 0;
+  for (const PlacedCloud& station : stations) total += station.input->file().clouds()[station.cloud].points;
+  return total;
+}
+
+}  // namespace
+
 WrittenClouds write_stations(const std::vector<PlacedCloud>& stations, const std::filesystem::path& output,
                              Monitor& monitor, const std::string& system) {
-  double total = 0.0;
-  for (const PlacedCloud& station : stations)
-    total += static_cast<double>(station.input->file().clouds()[station.cloud].points);
+  const auto total = static_cast<double>(points_of(stations));
   E57StationsWriter writer(output);
   monitor.set_unit(WorkUnit::points);
   WrittenClouds result;
@@ -205,28 +213,74 @@ WrittenClouds write_stations(const std::vector<PlacedCloud>& stations, const std
   return result;
 }
 
-WrittenClouds write_thinned(const JoinedClouds& clouds, const ThinOptions& thinning,
-                            const std::filesystem::path& output, Monitor& monitor) {
+namespace {
+
+/// The clouds' points, thinned; `read` counts those of all, of `total`.
+ThinnedCloud thinned(const JoinedClouds& clouds, const ThinOptions& thinning, std::uint64_t& read,
+                     std::uint64_t total, Monitor& monitor) {
   CloudThinner thinner(thinning, clouds.plan().most_points);
-  monitor.set_unit(WorkUnit::points);
   const std::unique_ptr<PointStream> stream = clouds.read();
-  std::uint64_t read = 0;
   while (const std::optional<RecordTable> piece = stream->next(kStreamRows)) {
     thinner.add(*piece);
     read += piece->rows;
     monitor.throw_if_cancelled();
-    monitor.advance(static_cast<double>(read), static_cast<double>(clouds.plan().most_points));
+    monitor.advance(static_cast<double>(read), static_cast<double>(total));
   }
-  const ThinnedCloud thinned = thinner.finish();
+  return thinner.finish();
+}
+
+std::vector<std::string> notes_of_thinning(std::vector<std::string> notes, std::uint64_t unusable) {
+  if (unusable > 0)
+    notes.push_back(fmt::format("{} points without finite coordinates are left out", unusable));
+  return notes;
+}
+
+}  // namespace
+
+WrittenClouds write_thinned(const JoinedClouds& clouds, const ThinOptions& thinning,
+                            const std::filesystem::path& output, Monitor& monitor) {
+  monitor.set_unit(WorkUnit::points);
+  std::uint64_t read = 0;
   CloudPlan plan = clouds.plan();
-  plan.most_points = thinned.table.rows;
+  const ThinnedCloud kept = thinned(clouds, thinning, read, plan.most_points, monitor);
+  plan.most_points = kept.table.rows;
   const std::unique_ptr<CloudWriter> writer = make_cloud_writer(output, plan);
-  writer->write(thinned.table);
+  writer->write(kept.table);
   writer->finish();
-  WrittenClouds result{thinned.read, thinned.table.rows, thinned.spacing_m, clouds.notes()};
-  if (thinned.unusable > 0)
-    result.notes.push_back(
-        fmt::format("{} points without finite coordinates are left out", thinned.unusable));
+  return {kept.read, kept.table.rows, kept.spacing_m, notes_of_thinning(clouds.notes(), kept.unusable)};
+}
+
+WrittenClouds write_thinned_stations(const std::vector<PlacedCloud>& stations, const ThinOptions& thinning,
+                                     const std::filesystem::path& output, Monitor& monitor) {
+  const std::uint64_t total = points_of(stations);
+  E57StationsWriter writer(output);
+  monitor.set_unit(WorkUnit::points);
+  WrittenClouds result;
+  std::uint64_t unusable = 0;
+  for (const PlacedCloud& station : stations) {
+    if (points_of({station}) == 0) continue;
+    const JoinedClouds cloud({station}, false);
+    ThinOptions share = thinning;
+    if (thinning.most_points > 0) {
+      const double part = static_cast<double>(cloud.plan().most_points) / static_cast<double>(total);
+      share.most_points = std::max<std::uint64_t>(
+          1, static_cast<std::uint64_t>(part * static_cast<double>(thinning.most_points)));
+    }
+    CloudPlan plan = cloud.plan();
+    const ThinnedCloud kept = thinned(cloud, share, result.read, total, monitor);
+    plan.most_points = kept.table.rows;
+    writer.begin_station(plan);
+    writer.write(kept.table);
+    result.written += kept.table.rows;
+    result.spacing_m = std::max(result.spacing_m, kept.spacing_m);
+    unusable += kept.unusable;
+    for (const std::string& note : cloud.notes()) {
+      if (std::find(result.notes.begin(), result.notes.end(), note) == result.notes.end())
+        result.notes.push_back(note);
+    }
+  }
+  writer.finish();
+  result.notes = notes_of_thinning(std::move(result.notes), unusable);
   return result;
 }
 

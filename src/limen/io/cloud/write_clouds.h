@@ -62,5 +62,9 @@ WrittenClouds write_stations(const std::vector<PlacedCloud>& stations, const std
 /// As write_clouds, thinned on the way.
 WrittenClouds write_thinned(const JoinedClouds& clouds, const ThinOptions& thinning,
                             const std::filesystem::path& output, Monitor& monitor = silent_monitor());
+/// As write_stations, each thinned by itself; of `most_points` each keeps its share.
+WrittenClouds write_thinned_stations(const std::vector<PlacedCloud>& stations, const ThinOptions& thinning,
+                                     const std::filesystem::path& output,
+                                     Monitor& monitor = silent_monitor());
 
 }  // namespace limen

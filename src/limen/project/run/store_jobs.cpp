@@ -11,7 +11,7 @@
 #include "limen/extract/targets/find_targets.h"
 #include "limen/files/file_hash.h"
 #include "limen/files/scan_in_file.h"
-#include "limen/io/cloud/point_sample.h"
+#include "limen/io/cloud/point_print.h"
 #include "limen/io/cloud/read_scan.h"
 #include "limen/model/plausible_size.h"
 #include "limen/project/store/kept_notes.h"
@@ -102,7 +102,7 @@ FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& opt
     for (const std::string& doubt : hints_about(scan))
       record.notes.push_back(read.scans.size() > 1 ? fmt::format("scan {}: {}", k, doubt) : doubt);
     record.points.push_back(scan.size());
-    record.marks.push_back(point_marks(scan));
+    record.prints.push_back(print_of(scan));
     const std::string key = store.feature_key(file.key(), static_cast<int>(k));
     if (!store.has_picture(key)) into_store([&] { store.save_picture(key, picture_of(scan)); });
     if (options.targets.any() && !scan.centre_known())

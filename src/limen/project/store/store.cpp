@@ -16,8 +16,12 @@
 
 namespace limen {
 
+void transfer(auto& bytes, Is<PointPrint> auto& print) {
+  bytes(print.points, print.spread_m, print.marks);
+}
+
 void transfer(auto& bytes, Is<FileRecord> auto& record) {
-  bytes(record.points, record.notes, record.marks);
+  bytes(record.points, record.notes, record.prints);
 }
 
 void transfer(auto& bytes, Is<FoundTarget> auto& target) {
@@ -86,7 +90,7 @@ std::string Store::file_key(const FileKey& file) const {
 std::optional<FileRecord> Store::load_file(const FileKey& file) const {
   return loaded(kFiles, file_key(file), [](std::string_view bytes, const std::string& where) {
     auto record = value_from<FileRecord>(bytes, where);
-    record.marks.resize(record.points.size());
+    record.prints.resize(record.points.size());
     return record;
   });
 }

@@ -12,6 +12,7 @@
 
 #include "limen/base/progress.h"
 #include "limen/extract/targets/found_target.h"
+#include "limen/io/cloud/point_print.h"
 #include "limen/model/result.h"
 #include "limen/project/store/prepared_bytes.h"
 #include "limen/project/store/scan_digest.h"
@@ -21,9 +22,9 @@ namespace limen {
 
 /// What is kept of a file beside the features of its scans.
 struct FileRecord {
-  std::vector<std::size_t> points;                     ///< of each scan in it
-  std::vector<std::string> notes;                      ///< without names of files (kept_notes.h)
-  std::vector<std::vector<std::uint64_t>> marks = {};  ///< of each scan (io/cloud/point_sample.h)
+  std::vector<std::size_t> points;      ///< of each scan in it
+  std::vector<std::string> notes;       ///< without names of files (kept_notes.h)
+  std::vector<PointPrint> prints = {};  ///< of each scan
 };
 
 /// A file by its bytes, and by what it is taken as: the same bytes are read otherwise as a model.
