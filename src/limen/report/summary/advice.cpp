@@ -188,6 +188,14 @@ std::vector<std::string> steps_registered(const RegistrationReport& report, cons
                     in_folder(folder, "result.json"), source_is_model ? " --inverse" : ""));
   }
   add_step_of_moved(report, steps);
+  for (const auto& [side, name] :
+       {std::pair(&report.source, "source"), std::pair(&report.target, "target")}) {
+    if (side->kind != "scan" || side->place.source != PlaceSource::unknown || side->mobile) continue;
+    steps.push_back(
+        fmt::format("if the scanner of {} stood in one place, state its position, and the accuracy will be "
+                    "better: --{}-origin x,y,z",
+                    file_name(*side), name));
+  }
   return steps;
 }
 

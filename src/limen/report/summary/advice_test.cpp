@@ -189,6 +189,17 @@ TEST(SummaryText, ListsWhatThereIsToChoose) {
   EXPECT_NE(summary_text(report, "out").find("1 other pose tested"), std::string::npos);
 }
 
+TEST(SummaryText, SaysThatAScannerOfUnknownPositionMayHaveMoved) {
+  RegistrationReport report = pair_of(Outcome::registered);
+  report.result.best.sigma.covariance.setIdentity();
+  report.result.best.sigma.formal_covariance.setIdentity();
+  EXPECT_EQ(summary_text(report, "out").find("may have moved"), std::string::npos);
+  EXPECT_FALSE(any_names(next_steps(report, "out"), "-origin"));
+  report.target.place.source = PlaceSource::unknown;
+  EXPECT_NE(summary_text(report, "out").find("the scanner of b.ply may have moved"), std::string::npos);
+  EXPECT_TRUE(any_names(next_steps(report, "out"), "--target-origin x,y,z"));
+}
+
 TEST(SummaryText, TellsTheShiftOfTheMiddleAndTheHintForLargeCoordinates) {
   RegistrationReport report = pair_of(Outcome::registered);
   report.result.best.target_from_source.translation = Vector3d(0.003, 0, 0);

@@ -60,6 +60,19 @@ std::string motion_lines(const RegistrationReport& report) {
                                          axis_words(motion.axis)));
 }
 
+/// What the stated accuracy counts besides the noise of the points.
+std::string rest_words(const RegistrationReport& report) {
+  std::string text = report.result.moved.empty() || in_model(report)
+                         ? "how far planes disagree"
+                         : "how far planes disagree or were moved";
+  if (report.source.mobile || report.target.mobile) text += ", and how far trajectories drift";
+  for (const InputSummary* side : {&report.source, &report.target}) {
+    if (side->kind == "scan" && side->place.source == PlaceSource::unknown && !side->mobile)
+      text += fmt::format(", and that the scanner of {} may have moved", file_name(*side));
+  }
+  return text;
+}
+
 std::string precision_lines(const RegistrationReport& report) {
   const RegistrationResult& result = report.result;
   std::string text;
@@ -70,10 +83,10 @@ std::string precision_lines(const RegistrationReport& report) {
                              length_words(precision->far_end.radius_m), precision->far_distance_m,
                              precision->across_open ? ", perpendicular to the undetermined direction" : ""));
     if (precision->middle.formal_radius_m)
-      text += line(
-          "", fmt::format("{} and {} from the noise of the points alone; the rest is how far planes disagree",
-                          length_words(*precision->middle.formal_radius_m),
-                          length_words(precision->far_end.formal_radius_m.value_or(0.0))));
+      text += line("", fmt::format("{} and {} from the noise of the points alone; the rest is {}",
+                                   length_words(*precision->middle.formal_radius_m),
+                                   length_words(precision->far_end.formal_radius_m.value_or(0.0)),
+                                   rest_words(report)));
   }
   for (const UnobservedFreedom& freedom : result.unobserved) text += line("not fixed", freedom.name);
   if (result.best.rms_m > 0) {
