@@ -6,7 +6,6 @@
 #include <numeric>
 #include <unordered_map>
 
-#include "limen/base/error.h"
 #include "limen/base/random.h"
 #include "limen/bim/solid/solid_faces.h"
 #include "limen/geometry/polygon_clip.h"
@@ -16,6 +15,8 @@ namespace {
 
 /// Pieces lower than this have no normal worth comparing: their corners decide.
 constexpr double kThin_m = 0.01;
+/// Narrower faces and holes are left out.
+constexpr double kLeastFaceWidthM = 1e-4;
 
 struct FacePiece {
   Vector3d area = Vector3d::Zero();  ///< normal times area
@@ -46,13 +47,13 @@ Plane plane_of(const PolygonMesh& mesh, std::size_t piece, const Vector3d& area)
 }
 
 /// Polygons that are not flat become triangles.
-PolygonMesh flat_pieces(const PolygonMesh& mesh, double plane_m) {
+PolygonMesh flat_pieces(const PolygonMesh& mesh) {
   PolygonMesh result;
   result.points = mesh.points;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const auto begin = mesh.corners.begin() + mesh.begin_of(i);
     const std::vector<std::uint32_t> ring(begin, mesh.corners.begin() + mesh.ends[i]);
-    if (ring.size() == 3 || farthest(mesh, i, plane_of(mesh, i, area_vector(mesh, i))) <= plane_m) {
+    if (ring.size() == 3 || farthest(mesh, i, plane_of(mesh, i, area_vector(mesh, i))) <= kFlatFaceM) {
       result.add(ring);
       continue;
     }
@@ -77,8 +78,8 @@ std::vector<FacePiece> pieces_of(const PolygonMesh& mesh) {
 /// Gathers pieces into planes: first over shared corners, from large to small, then planes that agree.
 class Gatherer {
  public:
-  Gatherer(const PolygonMesh& mesh, const FlatFaceOptions& options)
-      : mesh_(mesh), options_(options), pieces_(pieces_of(mesh)), at_corner_(mesh.points.size()) {}
+  explicit Gatherer(const PolygonMesh& mesh)
+      : mesh_(mesh), pieces_(pieces_of(mesh)), at_corner_(mesh.points.size()) {}
 
   std::vector<Cluster> gather() {
     std::vector<std::size_t> order(mesh_.size());
@@ -97,8 +98,8 @@ class Gatherer {
  private:
   [[nodiscard]] bool belongs(std::size_t piece, const Cluster& cluster) const {
     const double cosine = pieces_[piece].area.dot(cluster.plane.normal) / pieces_[piece].area.norm();
-    if (cosine < (pieces_[piece].thin ? 0.5 : std::cos(options_.angle_rad))) return false;
-    return farthest(mesh_, piece, cluster.plane) <= options_.plane_m;
+    if (cosine < (pieces_[piece].thin ? 0.5 : std::cos(kFlatFaceRad))) return false;
+    return farthest(mesh_, piece, cluster.plane) <= kFlatFaceM;
   }
 
   void place(std::size_t piece) {
@@ -129,7 +130,7 @@ class Gatherer {
     constexpr double kOffsetCell_m = 0.05;
     Place place{};
     for (std::size_t k = 0; k < 4; ++k) {
-      const double value = k < 3 ? plane.normal[static_cast<Eigen::Index>(k)] / (2.0 * options_.angle_rad)
+      const double value = k < 3 ? plane.normal[static_cast<Eigen::Index>(k)] / (2.0 * kFlatFaceRad)
                                  : plane.signed_distance(centre_) / kOffsetCell_m;
       const double floor = std::floor(value);
       place.cell[k] = static_cast<std::int64_t>(floor);
@@ -179,7 +180,6 @@ class Gatherer {
   }
 
   const PolygonMesh& mesh_;
-  const FlatFaceOptions& options_;
   std::vector<FacePiece> pieces_;
   std::vector<std::vector<std::uint32_t>> at_corner_;
   std::vector<Cluster> clusters_;
@@ -199,12 +199,12 @@ double width_of(const Ring& ring) {
 }
 
 /// Without corners on straight lines and without holes that rounding made.
-Polygon tidy(const Polygon& polygon, const FlatFaceOptions& options) {
+Polygon tidy(const Polygon& polygon) {
   constexpr double kStraight_m = 5e-5;
   Polygon result;
   result.outer = simplify_ring(polygon.outer, kStraight_m);
   for (const Ring& hole : polygon.holes) {
-    if (width_of(hole) < options.least_width_m) continue;
+    if (width_of(hole) < kLeastFaceWidthM) continue;
     Ring simple = simplify_ring(hole, kStraight_m);
     if (!simple.empty()) result.holes.push_back(std::move(simple));
   }
@@ -220,21 +220,15 @@ Polygon outline_of(const PolygonMesh& mesh, std::size_t piece, const PlaneFrame&
 
 }  // namespace
 
-void FlatFaceOptions::check() const {
-  if (!(plane_m > 0.0)) throw_bad_option("plane_m", plane_m, "above 0");
-  if (!(angle_rad > 0.0)) throw_bad_option("angle_rad", angle_rad, "above 0");
-  if (!(least_width_m >= 0.0)) throw_bad_option("least_width_m", least_width_m, "at least 0");
-}
-
 std::vector<BimFace> faces_in_plane(const Plane& plane, const PlaneFrame& frame,
-                                    const std::vector<Polygon>& areas, const FlatFaceOptions& options) {
+                                    const std::vector<Polygon>& areas) {
   std::vector<BimFace> faces;
   for (const Polygon& part : areas) {
-    if (width_of(part.outer) < options.least_width_m) continue;
+    if (width_of(part.outer) < kLeastFaceWidthM) continue;
     BimFace face;
     face.plane = plane;
     face.frame = frame;
-    face.outline = tidy(part, options);
+    face.outline = tidy(part);
     if (face.outline.outer.size() < 3) continue;
     face.area_m2 = area(face.outline);
     if (face.area_m2 > 0.0) faces.push_back(std::move(face));
@@ -242,19 +236,17 @@ std::vector<BimFace> faces_in_plane(const Plane& plane, const PlaneFrame& frame,
   return faces;
 }
 
-std::vector<BimFace> flat_faces(const PolygonMesh& mesh, std::int32_t element,
-                                const FlatFaceOptions& options) {
-  options.check();
-  const PolygonMesh whole = oriented(flat_pieces(welded(mesh), options.plane_m));
+std::vector<BimFace> flat_faces(const PolygonMesh& mesh, std::int32_t element) {
+  const PolygonMesh whole = oriented(flat_pieces(welded(mesh)));
   std::vector<BimFace> faces;
-  for (const Cluster& cluster : Gatherer(whole, options).gather()) {
+  for (const Cluster& cluster : Gatherer(whole).gather()) {
     const std::size_t largest = cluster.pieces.front();
     const PlaneFrame frame = make_frame(cluster.plane, whole.points[whole.corners[whole.begin_of(largest)]]);
     std::vector<Polygon> pieces;
     for (const std::size_t piece : cluster.pieces) pieces.push_back(outline_of(whole, piece, frame));
     // A lone triangle, as curved surfaces have many, is united already.
     const bool united = pieces.size() == 1 && pieces.front().outer.size() == 3;
-    for (BimFace& face : faces_in_plane(cluster.plane, frame, united ? pieces : merged(pieces), options)) {
+    for (BimFace& face : faces_in_plane(cluster.plane, frame, united ? pieces : merged(pieces))) {
       face.element = element;
       faces.push_back(std::move(face));
     }

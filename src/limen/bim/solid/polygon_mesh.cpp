@@ -15,19 +15,18 @@ namespace limen {
 namespace {
 
 constexpr double kFarthest_m = 1e9;
+constexpr double kSnapM = 1e-5;
 
 /// Corners by the cell of a grid; a corner near a cell's border is looked for in the neighbour too.
 class CornerTable {
  public:
-  explicit CornerTable(double snap_m) : snap_m_(snap_m) {}
-
   std::uint32_t index_of(const Vector3d& x) {
     const std::array<std::int64_t, 3> base = cell(x);
     for (int dx = -1; dx <= 1; ++dx) {
       for (int dy = -1; dy <= 1; ++dy) {
         for (int dz = -1; dz <= 1; ++dz) {
           const auto found = first_.find(key({base[0] + dx, base[1] + dy, base[2] + dz}));
-          if (found != first_.end() && (points_[found->second] - x).squaredNorm() <= snap_m_ * snap_m_)
+          if (found != first_.end() && (points_[found->second] - x).squaredNorm() <= kSnapM * kSnapM)
             return found->second;
         }
       }
@@ -40,10 +39,10 @@ class CornerTable {
   [[nodiscard]] std::vector<Vector3d> take_points() { return std::move(points_); }
 
  private:
-  [[nodiscard]] std::array<std::int64_t, 3> cell(const Vector3d& x) const {
+  static std::array<std::int64_t, 3> cell(const Vector3d& x) {
     std::array<std::int64_t, 3> result{};
     for (int k = 0; k < 3; ++k)
-      result[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(std::floor(x[k] / snap_m_));
+      result[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(std::floor(x[k] / kSnapM));
     return result;
   }
   static std::uint64_t key(const std::array<std::int64_t, 3>& cell) {
@@ -52,7 +51,6 @@ class CornerTable {
     return hash;
   }
 
-  double snap_m_;
   std::vector<Vector3d> points_;
   std::unordered_map<std::uint64_t, std::uint32_t> first_;
 };
@@ -246,8 +244,8 @@ Vector3d area_vector(const PolygonMesh& mesh, std::size_t polygon) {
   return 0.5 * sum;
 }
 
-PolygonMesh welded(const PolygonMesh& mesh, double snap_m) {
-  CornerTable table(snap_m);
+PolygonMesh welded(const PolygonMesh& mesh) {
+  CornerTable table;
   constexpr std::uint32_t kNone = 0xffffffffU;
   std::vector<std::uint32_t> now(mesh.points.size(), kNone);
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
@@ -262,7 +260,7 @@ PolygonMesh welded(const PolygonMesh& mesh, double snap_m) {
     ring = without_repeats(std::move(ring));
     if (ring.size() < 3) continue;
     result.add(ring);
-    if (area_vector(result, result.size() - 1).norm() > snap_m * snap_m) continue;
+    if (area_vector(result, result.size() - 1).norm() > kSnapM * kSnapM) continue;
     result.corners.resize(result.corners.size() - ring.size());
     result.ends.pop_back();
   }

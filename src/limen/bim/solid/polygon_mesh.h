@@ -30,10 +30,10 @@ struct PolygonMesh {
 /// Half the sum of cross products round a polygon (Newell): its unit normal times its area, m^2.
 Vector3d area_vector(const PolygonMesh& mesh, std::size_t polygon);
 
-/// The mesh with corners closer than about `snap_m` made one, and without what has lost its area by that or
+/// The mesh with corners closer than about 0.01 mm made one, and without what has lost its area by that or
 /// occurs twice (the same corners in the same sense). Corners that are not finite take their polygon
 /// with them.
-PolygonMesh welded(const PolygonMesh& mesh, double snap_m = 1e-5);
+PolygonMesh welded(const PolygonMesh& mesh);
 
 /// A welded mesh with one sense of winding: neighbours over an edge that two polygons share agree, and closed
 /// parts have their normals outwards (a closed part inside another one is its cavity and may keep its own).

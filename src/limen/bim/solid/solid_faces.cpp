@@ -61,9 +61,7 @@ bool bounds_something(const PolygonMesh& mesh) {
 
 class Operation {
  public:
-  Operation(const Solid& shape, const std::vector<const Solid*>& cutters, const FlatFaceOptions& options)
-      : options_(options) {
-    root_ = node_of(shape);
+  Operation(const Solid& shape, const std::vector<const Solid*>& cutters) : root_(node_of(shape)) {
     if (cutters.empty()) return;
     Node whole{SolidOperation::subtract, 0, {}};
     whole.children.push_back(std::move(root_));
@@ -96,7 +94,7 @@ class Operation {
     }
     Leaf leaf;
     leaf.mesh = oriented(welded(solid.mesh));
-    leaf.faces = flat_faces(solid.mesh, -1, options_);
+    leaf.faces = flat_faces(solid.mesh, -1);
     leaf.box = limen::box_of(leaf.mesh);
     leaf.closed = bounds_something(leaf.mesh);
     leaves_.push_back(std::move(leaf));
@@ -153,18 +151,17 @@ class Operation {
 
   void add_faces(const Plane& plane, const PlaneFrame& frame, const Areas& areas,
                  std::vector<BimFace>& result) const {
-    for (BimFace& face : faces_in_plane(plane, frame, areas, options_)) result.push_back(std::move(face));
+    for (BimFace& face : faces_in_plane(plane, frame, areas)) result.push_back(std::move(face));
   }
 
-  const FlatFaceOptions& options_;
   std::vector<Leaf> leaves_;
   Node root_;
 };
 
-bool in_plane(const BimFace& face, const BimFace& of, const FlatFaceOptions& options) {
-  if (face.plane.normal.dot(of.plane.normal) < std::cos(options.angle_rad)) return false;
+bool in_plane(const BimFace& face, const BimFace& of) {
+  if (face.plane.normal.dot(of.plane.normal) < std::cos(kFlatFaceRad)) return false;
   return std::all_of(face.outline.outer.begin(), face.outline.outer.end(), [&](const Vector2d& p) {
-    return std::abs(of.plane.signed_distance(face.frame.to_space(p))) <= options.plane_m;
+    return std::abs(of.plane.signed_distance(face.frame.to_space(p))) <= kFlatFaceM;
   });
 }
 
@@ -181,7 +178,7 @@ PolygonMesh all_meshes(const Solid& solid) {
   return mesh;
 }
 
-std::vector<BimFace> joined_faces(std::vector<BimFace> faces, const FlatFaceOptions& options) {
+std::vector<BimFace> joined_faces(std::vector<BimFace> faces) {
   constexpr std::size_t kMost = 3000;  // each is compared with each
   if (faces.size() > kMost) return faces;
   std::stable_sort(faces.begin(), faces.end(),
@@ -192,7 +189,7 @@ std::vector<BimFace> joined_faces(std::vector<BimFace> faces, const FlatFaceOpti
     if (taken[i] != 0) continue;
     Areas areas{faces[i].outline};
     for (std::size_t j = i + 1; j < faces.size(); ++j) {
-      if (taken[j] != 0 || !in_plane(faces[j], faces[i], options)) continue;
+      if (taken[j] != 0 || !in_plane(faces[j], faces[i])) continue;
       taken[j] = 1;
       areas.push_back(projected({faces[j].outline}, faces[j].frame, faces[i].frame).front());
     }
@@ -200,7 +197,7 @@ std::vector<BimFace> joined_faces(std::vector<BimFace> faces, const FlatFaceOpti
       result.push_back(std::move(faces[i]));
       continue;
     }
-    for (BimFace& face : faces_in_plane(faces[i].plane, faces[i].frame, merged(areas), options)) {
+    for (BimFace& face : faces_in_plane(faces[i].plane, faces[i].frame, merged(areas))) {
       face.element = faces[i].element;
       result.push_back(std::move(face));
     }
@@ -208,8 +205,7 @@ std::vector<BimFace> joined_faces(std::vector<BimFace> faces, const FlatFaceOpti
   return result;
 }
 
-SolidFaces solid_faces(const std::vector<Solid>& shapes, const std::vector<const Solid*>& cutters,
-                       const FlatFaceOptions& options) {
+SolidFaces solid_faces(const std::vector<Solid>& shapes, const std::vector<const Solid*>& cutters) {
   SolidFaces result;
   PolygonMesh plain;
   std::size_t groups = 0;
@@ -222,15 +218,15 @@ SolidFaces solid_faces(const std::vector<Solid>& shapes, const std::vector<const
       append(shape.mesh, plain);
       continue;
     }
-    const Operation operation(shape, near, options);
+    const Operation operation(shape, near);
     std::vector<BimFace> faces = operation.faces();
     std::move(faces.begin(), faces.end(), std::back_inserter(result.faces));
     result.open_cutters += operation.open_leaves();
     ++groups;
   }
-  std::vector<BimFace> faces = flat_faces(plain, -1, options);
+  std::vector<BimFace> faces = flat_faces(plain, -1);
   std::move(faces.begin(), faces.end(), std::back_inserter(result.faces));
-  if (groups > 0) result.faces = joined_faces(std::move(result.faces), options);
+  if (groups > 0) result.faces = joined_faces(std::move(result.faces));
   return result;
 }
 
