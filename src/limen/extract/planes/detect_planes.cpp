@@ -104,7 +104,7 @@ std::vector<PlaneFit> refitted(const Scan& scan, const PlaneLabels& planes) {
 DetectedPlanes detect_relief(const Scan& scan, const GrowOptions& grow, Monitor& monitor) {
   constexpr double kDriftShare = 0.3;  // of the work, about
   StagePart straightening(monitor, 0.0, kDriftShare);
-  const ScanDrift drift = scan_drift(scan, {}, straightening);
+  const ScanDrift drift = scan_drift(scan, straightening);
   std::optional<Scan> straight;
   if (!drift.knots.empty()) straight = straightened(scan, drift);
   const Scan& seen = straight ? *straight : scan;

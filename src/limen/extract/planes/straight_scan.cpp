@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "limen/base/drawn_steps.h"
-#include "limen/base/error.h"
 #include "limen/extract/planes/grow_planes.h"
 #include "limen/geometry/linear.h"
 
@@ -15,7 +14,19 @@ namespace limen {
 namespace {
 
 constexpr int kDriftRounds = 6;
+// The planes that tell the drift.
+constexpr double kDriftPlaneM = 0.025;  // threshold
 constexpr int kFewestInliers = 100;
+constexpr double kDriftPlaneWidthM = 2.5;  // the narrower side
+constexpr double kDriftNoiseM = 0.005;     // of a point about its plane, relief and all
+constexpr double kPointsPerLook = 50.0;    // so many points err alike
+constexpr std::size_t kMostDriftPoints = 150000;
+// A trajectory's error is given at knots so far apart.
+constexpr double kKnotS = 1.0;
+constexpr int kMostKnots = 100;
+constexpr double kDriftChangeM = 0.003;  // from knot to knot, one standard deviation
+constexpr double kDriftStrayM = 0.03;    // in all
+constexpr double kLeastDriftM = 0.0015;  // drifts below this are left alone
 
 /// The knots before and after a time, and how far it is from one to the other.
 struct KnotPlace {
@@ -36,10 +47,10 @@ Scan timed_subset(const Scan& scan, std::size_t most) {
   return subset(scan, kept);
 }
 
-ScanDrift empty_drift(const std::vector<double>& times_s, const StraightOptions& options) {
+ScanDrift empty_drift(const std::vector<double>& times_s) {
   const auto [first, last] = std::minmax_element(times_s.begin(), times_s.end());
   const double span = *last - *first;
-  const int steps = std::clamp(static_cast<int>(span / options.knot_s), 2, options.most_knots - 1);
+  const int steps = std::clamp(static_cast<int>(span / kKnotS), 2, kMostKnots - 1);
   ScanDrift drift;
   drift.begin_s = *first;
   drift.step_s = std::max(1e-6, span / steps);
@@ -50,11 +61,11 @@ ScanDrift empty_drift(const std::vector<double>& times_s, const StraightOptions&
 /// The equations of the knots: what is known of them beforehand, and the looks at planes.
 class DriftEquations {
  public:
-  DriftEquations(std::size_t knots, const StraightOptions& options)
+  explicit DriftEquations(std::size_t knots)
       : matrix_(Eigen::MatrixXd::Zero(size_of(knots), size_of(knots))),
         right_(Eigen::VectorXd::Zero(size_of(knots))) {
-    const double stray = 1.0 / (options.stray_m * options.stray_m);
-    const double change = 1.0 / (options.change_m * options.change_m);
+    const double stray = 1.0 / (kDriftStrayM * kDriftStrayM);
+    const double change = 1.0 / (kDriftChangeM * kDriftChangeM);
     for (Eigen::Index i = 0; i < matrix_.rows(); ++i) {
       matrix_(i, i) += stray;
       if (i + 3 >= matrix_.rows()) continue;
@@ -91,8 +102,8 @@ class DriftEquations {
 /// Planes about the straightened points, points far off counting little, and the knots about the planes.
 class DriftRounds {
  public:
-  DriftRounds(const Scan& scan, const PlaneLabels& planes, const StraightOptions& options)
-      : scan_(scan), planes_(planes), o_(options), drift_(empty_drift(scan.times_s, options)) {
+  DriftRounds(const Scan& scan, const PlaneLabels& planes)
+      : scan_(scan), planes_(planes), drift_(empty_drift(scan.times_s)) {
     for (const PlaneFit& fit : planes.fits) fits_.push_back(fit.plane);
   }
   ScanDrift run() {
@@ -106,15 +117,15 @@ class DriftRounds {
  private:
   [[nodiscard]] bool holds(std::int32_t label) const {
     return label >= 0 &&
-           std::sqrt(12.0 * planes_.fits[static_cast<std::size_t>(label)].variances[1]) >= o_.min_width_m;
+           std::sqrt(12.0 * planes_.fits[static_cast<std::size_t>(label)].variances[1]) >= kDriftPlaneWidthM;
   }
   [[nodiscard]] double trust(double residual) const {
-    const double off = residual / o_.noise_m;
+    const double off = residual / kDriftNoiseM;
     return 1.0 / (1.0 + off * off);
   }
   void refit_knots() {
-    DriftEquations equations(drift_.knots.size(), o_);
-    const double look = 1.0 / (o_.noise_m * o_.noise_m * o_.points_per_look);
+    DriftEquations equations(drift_.knots.size());
+    const double look = 1.0 / (kDriftNoiseM * kDriftNoiseM * kPointsPerLook);
     for (std::size_t i = 0; i < scan_.size(); ++i) {
       if (!holds(planes_.labels[i])) continue;
       const Plane& plane = fits_[static_cast<std::size_t>(planes_.labels[i])];
@@ -144,20 +155,11 @@ class DriftRounds {
 
   const Scan& scan_;
   const PlaneLabels& planes_;
-  StraightOptions o_;
   ScanDrift drift_;
   std::vector<Plane> fits_;
 };
 
 }  // namespace
-
-void StraightOptions::check() const {
-  if (!(threshold_m > 0)) throw_bad_option("threshold_m", threshold_m, "more than 0");
-  if (!(knot_s > 0)) throw_bad_option("knot_s", knot_s, "more than 0");
-  if (most_knots < 3) throw_bad_option("most_knots", most_knots, "3 or more");
-  if (!(noise_m > 0 && change_m > 0 && stray_m > 0))
-    throw_bad_option("deviations of a drift", std::min({noise_m, change_m, stray_m}), "more than 0");
-}
 
 Vector3d ScanDrift::at(double time_s) const {
   if (knots.empty()) return Vector3d::Zero();
@@ -165,19 +167,18 @@ Vector3d ScanDrift::at(double time_s) const {
   return (1.0 - place.share) * knots[place.knot] + place.share * knots[place.knot + 1];
 }
 
-ScanDrift scan_drift(const Scan& scan, const StraightOptions& options, Monitor& monitor) {
-  options.check();
+ScanDrift scan_drift(const Scan& scan, Monitor& monitor) {
   if (!scan.mobile() || scan.times_s.size() != scan.size()) return {};
-  const Scan part = timed_subset(scan, options.max_points);
+  const Scan part = timed_subset(scan, kMostDriftPoints);
   GrowOptions grow;
-  grow.inlier_threshold_m = options.threshold_m;
+  grow.inlier_threshold_m = kDriftPlaneM;
   grow.min_inliers = kFewestInliers;
   const PlaneLabels planes = grow_planes(part, grow, monitor).planes;
-  const ScanDrift drift = DriftRounds(part, planes, options).run();
+  const ScanDrift drift = DriftRounds(part, planes).run();
   double squares = 0.0;
   for (const Vector3d& knot : drift.knots) squares += knot.squaredNorm();
   const double stray = std::sqrt(squares / (3.0 * static_cast<double>(drift.knots.size())));
-  return stray < options.least_m ? ScanDrift{} : drift;
+  return stray < kLeastDriftM ? ScanDrift{} : drift;
 }
 
 Scan straightened(Scan scan, const ScanDrift& drift) {
