@@ -18,6 +18,7 @@ namespace limen {
 namespace {
 
 constexpr double kSquareM = 0.5;
+constexpr double kStripAsideM = 0.5;   // how far beyond a plane's points its strips are looked for
 constexpr std::size_t kFewest = 4;     // points of a square that make a strip
 constexpr std::size_t kTimesMore = 3;  // than beside it
 
@@ -37,7 +38,7 @@ struct SeenPlane {
   }
 };
 
-std::vector<SeenPlane> seen_planes(const Scan& scan, const PlaneLabels& planes, double aside_m) {
+std::vector<SeenPlane> seen_planes(const Scan& scan, const PlaneLabels& planes) {
   std::vector<SeenPlane> seen(planes.fits.size());
   for (std::size_t k = 0; k < seen.size(); ++k) {
     seen[k].plane = planes.fits[k].plane;
@@ -49,8 +50,8 @@ std::vector<SeenPlane> seen_planes(const Scan& scan, const PlaneLabels& planes, 
     plane.add(scan.points[i], plane.plane.signed_distance(scan.centre(i)));
   }
   for (SeenPlane& plane : seen) {
-    plane.low.array() -= aside_m;
-    plane.high.array() += aside_m;
+    plane.low.array() -= kStripAsideM;
+    plane.high.array() += kStripAsideM;
   }
   return seen;
 }
@@ -84,22 +85,16 @@ std::vector<std::uint32_t> strips_of(const Scan& scan, const SeenPlane& seen,
 
 }  // namespace
 
-void StripOptions::check() const {
-  if (!(threshold_m > 0)) throw_bad_option("threshold_m", threshold_m, "more than 0");
-  if (!(aside_m >= 0)) throw_bad_option("aside_m", aside_m, "0 or more");
-}
-
-PlaneLabels with_strips(const Scan& scan, const PlaneLabels& planes, const StripOptions& options) {
-  options.check();
+PlaneLabels with_strips(const Scan& scan, const PlaneLabels& planes, double threshold_m) {
   if (!scan.centre_known()) return planes;
-  const std::vector<SeenPlane> seen = seen_planes(scan, planes, options.aside_m);
+  const std::vector<SeenPlane> seen = seen_planes(scan, planes);
   std::vector<std::uint32_t> free;
   for (std::size_t i = 0; i < planes.labels.size(); ++i) {
     if (planes.labels[i] < 0) free.push_back(static_cast<std::uint32_t>(i));
   }
   std::vector<std::vector<std::uint32_t>> strips(seen.size());
   parallel_for(seen.size(), 1, [&](std::size_t k, std::size_t /*end*/) {
-    strips[k] = strips_of(scan, seen[k], free, options.threshold_m);
+    strips[k] = strips_of(scan, seen[k], free, threshold_m);
   });
   PlaneLabels more = planes;
   for (std::size_t k = 0; k < strips.size(); ++k) {
@@ -166,8 +161,7 @@ PlaneLabels fine_planes(const Scan& scan, const PlaneLabels& planes, const FineO
   sheets.min_inliers = options.min_inliers;
   for (PlanePiece& sheet : relief_sheets(scan, apart, anchor, sheets)) pieces.push_back(std::move(sheet));
   pieces = joined_pieces(std::move(pieces), join);
-  return with_strips(scan, labelled_planes(scan, pieces, anchor, threshold_m),
-                     {.threshold_m = sheets.threshold_m});
+  return with_strips(scan, labelled_planes(scan, pieces, anchor, threshold_m), sheets.threshold_m);
 }
 
 }  // namespace limen

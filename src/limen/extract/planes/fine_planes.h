@@ -7,17 +7,10 @@
 
 namespace limen {
 
-struct StripOptions {
-  double threshold_m = 0.008;  ///< farthest a point may lie from its plane
-  double aside_m = 0.5;        ///< how far beyond a plane's points its strips are looked for
-
-  void check() const;
-};
-
 /// Narrow strips of planes that are known: the shoulders of cars beside their bonnets, a wall between two
 /// mouldings. Points without a plane join one within the box of its points where, square by square, they lie
 /// much denser within the threshold than beside it, seen from the same side. The larger plane takes first.
-PlaneLabels with_strips(const Scan& scan, const PlaneLabels& planes, const StripOptions& options);
+PlaneLabels with_strips(const Scan& scan, const PlaneLabels& planes, double threshold_m);
 
 /// Of fine_planes() and fine_station_planes() (fine_station.h).
 struct FineOptions {

@@ -134,7 +134,7 @@ TEST(FinePlanes, AStripOfAKnownPlaneJoinsIt) {
   const std::size_t strip = street.scan.size();
   street.add_patch(12.3, 12.36, 0.0, 6.0, -0.04, 120);
   facade.planes.labels.resize(street.scan.size(), -1);
-  const PlaneLabels more = with_strips(street.scan, facade.planes, {});
+  const PlaneLabels more = with_strips(street.scan, facade.planes, 0.008);
   EXPECT_GT(
       std::count(more.labels.begin() + 7000, more.labels.begin() + static_cast<std::ptrdiff_t>(strip), 0),
       110);

@@ -15,6 +15,9 @@
 namespace limen {
 namespace {
 
+constexpr double kPieceGapM = 0.4;  // pieces of a plane farther apart are planes of their own
+constexpr std::size_t kFewestOfPiece = 25;
+
 PlaneFit fit_of(const Scan& scan, const std::vector<std::uint32_t>& points) {
   const Vector3d anchor = scan.points[points.front()];
   PointMoments moments;
@@ -27,21 +30,15 @@ PlaneFit fit_of(const Scan& scan, const std::vector<std::uint32_t>& points) {
 
 }  // namespace
 
-void SplitOptions::check() const {
-  if (!(gap_m > 0)) throw_bad_option("gap_m", gap_m, "more than 0");
-  if (min_inliers < 3) throw_bad_option("split min_inliers", min_inliers, "3 or more");
-}
-
-PlaneLabels split_planes(const Scan& scan, const PlaneLabels& planes, const SplitOptions& options) {
-  options.check();
+PlaneLabels split_planes(const Scan& scan, const PlaneLabels& planes) {
   PlaneLabels split;
   split.inlier_threshold_m = planes.inlier_threshold_m;
   split.labels.assign(planes.labels.size(), -1);
   const std::vector<std::vector<std::uint32_t>> points = points_of(planes.labels, planes.fits.size());
   for (std::size_t k = 0; k < points.size(); ++k) {
     for (const std::vector<std::uint32_t>& piece :
-         touching_parts(scan, planes.fits[k], points[k], options.gap_m)) {
-      if (piece.size() < static_cast<std::size_t>(options.min_inliers)) break;
+         touching_parts(scan, planes.fits[k], points[k], kPieceGapM)) {
+      if (piece.size() < kFewestOfPiece) break;
       for (const std::uint32_t i : piece) split.labels[i] = static_cast<std::int32_t>(split.fits.size());
       split.fits.push_back(fit_of(scan, piece));
     }

@@ -9,17 +9,10 @@
 
 namespace limen {
 
-struct SplitOptions {
-  double gap_m = 0.4;    ///< pieces of a plane farther apart are planes of their own; > 0
-  int min_inliers = 25;  ///< smaller pieces are dropped; 3 or more
-
-  void check() const;
-};
-
 /// Planes cut into the pieces that are connected, each fitted for itself: the ceilings of two rooms seen
 /// through their windows may be one plane to a few millimetres, and neither room's. Pieces follow each other
-/// in the order of their planes, the largest first.
-PlaneLabels split_planes(const Scan& scan, const PlaneLabels& planes, const SplitOptions& options = {});
+/// in the order of their planes, the largest first; small ones are dropped.
+PlaneLabels split_planes(const Scan& scan, const PlaneLabels& planes);
 
 struct PolygonOptions {
   double alpha_m = 0.0;       ///< radius of the alpha shape; 0: from the spacing of each plane's points
