@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::int32_t kBlockBits = 3;
 constexpr std::size_t kBlockCubes = 512;
+constexpr double kMaxCubes = 1U << 28U;   // of the whole extent, one bit each
+constexpr double kFreeMarginM = 0.6;      // rays count as free up to this far before their point
 constexpr std::size_t kMaxRays = 400000;  // of a scan, evenly chosen, that free space
 
 /// The extent of all but the strays: the lowest and highest thousandth are left out, half a metre is added.
@@ -42,27 +44,20 @@ std::size_t place_in_block(const std::array<std::int32_t, 3>& key) {
 
 }  // namespace
 
-void VoxelMapOptions::check() const {
-  if (!(edge_m > 0)) throw_bad_option("edge_m", edge_m, "more than 0");
-  if (!(margin_m >= edge_m)) throw_bad_option("margin_m", margin_m, "at least edge_m");
-}
-
-VoxelMap::VoxelMap(const Scan& scan, const Features& features, const VoxelMapOptions& options)
-    : facets_(facets_of(features)), edge_(options.edge_m) {
-  options.check();
+VoxelMap::VoxelMap(const Scan& scan, const Features& features) : facets_(facets_of(features)) {
   if (scan.size() == 0) return;
   const Extent extent = robust_extent(scan.points);
   low_ = extent.low;
   const Vector3d sides = extent.high - extent.low;
   const double volume = sides.prod();
-  edge_ = std::max(edge_, std::cbrt(volume / static_cast<double>(options.max_cubes)));
+  edge_ = std::max(edge_, std::cbrt(volume / kMaxCubes));
   per_m_ = 1.0 / edge_;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     size_[axis] = 1 + static_cast<std::int32_t>(sides[static_cast<Eigen::Index>(axis)] / edge_);
   }
   make_blocks();
   enter(features);
-  if (scan.centre_known()) carve(scan, std::max(options.margin_m, 2.0 * edge_));
+  if (scan.centre_known()) carve(scan, std::max(kFreeMarginM, 2.0 * edge_));
 }
 
 VoxelMap::VoxelMap(const VoxelMapState& state, const Features& features)

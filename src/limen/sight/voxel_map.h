@@ -11,17 +11,9 @@
 
 namespace limen {
 
-struct VoxelMapOptions {
-  double edge_m = 0.25;               ///< of the cubes; grows where the scene is too large for the memory
-  std::size_t max_cubes = 1U << 28U;  ///< of the whole extent, one bit each
-  double margin_m = 0.6;              ///< rays count as free up to this far before their point
-
-  void check() const;
-};
-
 /// What a map of cubes knows beside the features, to be kept and taken back.
 struct VoxelMapState {
-  double edge_m = 0.25;
+  double edge_m = 0.25;  ///< of the cubes; grows where the scene is too large for the memory
   Vector3d low = Vector3d::Zero();
   std::array<std::int32_t, 3> size{0, 0, 0};  ///< cubes along each axis
   std::vector<std::uint8_t> free_bits;        ///< one bit per cube, empty where no ray freed any
@@ -32,7 +24,7 @@ struct VoxelMapState {
 /// and silent where it does not know: no ray of an unknown scanner position frees a cube.
 class VoxelMap : public SpaceView {
  public:
-  VoxelMap(const Scan& scan, const Features& features, const VoxelMapOptions& options = {});
+  VoxelMap(const Scan& scan, const Features& features);
   /// The same map again; `features` are those it was made with. Throws Error where the sizes do not fit.
   VoxelMap(const VoxelMapState& state, const Features& features);
 

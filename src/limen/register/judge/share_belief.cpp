@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limen/base/error.h"
 #include "limen/base/system.h"
 
 namespace limen {
@@ -16,11 +15,6 @@ double log_beta(double a, double b) {
 }
 
 }  // namespace
-
-void ShareBelief::check(const char* name) const {
-  if (!(mean > 0 && mean < 1)) throw_bad_option(name, mean, "within (0, 1)");
-  if (!(strength > 0)) throw_bad_option(name, strength, "more than 0");
-}
 
 double log_beta_binomial(double agreeing, double other, const ShareBelief& belief) {
   const double a = belief.mean * belief.strength;

@@ -11,9 +11,6 @@ namespace limen {
 struct ShareBelief {
   double mean = 0.5;
   double strength = 2.0;
-
-  /// `name`: of the option, for the error of a mean outside (0, 1) or a strength not above 0.
-  void check(const char* name) const;
 };
 
 /// log of the mean of q^agreeing (1 - q)^other over the belief about the share q (beta-binomial; the counts

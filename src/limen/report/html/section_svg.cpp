@@ -7,12 +7,15 @@
 
 #include <fmt/format.h>
 
-#include "limen/base/error.h"
 #include "limen/geometry/spread_evenly.h"
 
 namespace limen {
 namespace {
 
+constexpr double kSectionM = 0.3;                 // points within half of it of the cut are drawn
+constexpr std::size_t kMostSectionPoints = 5000;  // per scan
+constexpr double kSectionWidthPx = 720.0;
+constexpr double kSectionHeightPx = 460.0;
 constexpr double kBarPx = 34.0;  // below the picture: scale bar and key
 constexpr double kTitlePx = 26.0;
 
@@ -40,14 +43,12 @@ Axes axes_of(SectionSide side) {
 /// Paper coordinates of one section.
 class Paper {
  public:
-  Paper(const SceneView& view, SectionSide side, const SectionOptions& options)
-      : axes_(axes_of(side)), low_(view.low), high_(view.high) {
+  Paper(const SceneView& view, SectionSide side) : axes_(axes_of(side)), low_(view.low), high_(view.high) {
     const double across = std::max(0.1, high_[axes_.across] - low_[axes_.across]);
     const double up = std::max(0.1, high_[axes_.up] - low_[axes_.up]);
-    px_per_m_ = std::min(options.width_px / across, options.max_height_px / up);
-    width_ = options.width_px;
+    px_per_m_ = std::min(kSectionWidthPx / across, kSectionHeightPx / up);
     height_ = std::ceil(up * px_per_m_);
-    left_ = 0.5 * (width_ - across * px_per_m_);
+    left_ = 0.5 * (kSectionWidthPx - across * px_per_m_);
   }
 
   [[nodiscard]] Vector2d place(const Vector3d& x_in_view) const {
@@ -55,10 +56,9 @@ class Paper {
             kTitlePx + (high_[axes_.up] - x_in_view[axes_.up]) * px_per_m_};
   }
   [[nodiscard]] bool shows(const Vector2d& p) const {
-    return p.x() >= 0 && p.x() <= width_ && p.y() >= kTitlePx && p.y() <= kTitlePx + height_;
+    return p.x() >= 0 && p.x() <= kSectionWidthPx && p.y() >= kTitlePx && p.y() <= kTitlePx + height_;
   }
   [[nodiscard]] double px_per_m() const { return px_per_m_; }
-  [[nodiscard]] double width() const { return width_; }
   [[nodiscard]] double height() const { return height_; }
   [[nodiscard]] const Axes& axes() const { return axes_; }
 
@@ -67,7 +67,6 @@ class Paper {
   Vector3d low_;
   Vector3d high_;
   double px_per_m_ = 1.0;
-  double width_ = 0.0;
   double height_ = 0.0;
   double left_ = 0.0;
 };
@@ -91,19 +90,19 @@ std::string dots(const std::vector<Vector2d>& places, const char* colour) {
 
 /// Places on paper of a side's points near the cut, evenly chosen where there are too many.
 std::vector<Vector2d> near_cut(const SceneSide& side, const Rigid3& view_from_side, const Paper& paper,
-                               double cut, const SectionOptions& options) {
+                               double cut) {
   std::vector<Vector2d> places;
   for (const Vector3d& point : side.points) {
     const Vector3d x = view_from_side * point;
-    if (std::abs(x[paper.axes().depth] - cut) > 0.5 * options.thickness_m) continue;
+    if (std::abs(x[paper.axes().depth] - cut) > 0.5 * kSectionM) continue;
     const Vector2d place = paper.place(x);
     if (paper.shows(place)) places.push_back(place);
   }
-  if (places.size() <= options.max_points) return places;
+  if (places.size() <= kMostSectionPoints) return places;
   std::vector<Vector3d> flat;
   for (const Vector2d& place : places) flat.push_back({0.01 * place.x(), 0.01 * place.y(), 0.0});
   std::vector<Vector2d> kept;
-  for (const std::uint32_t i : spread_evenly(flat, options.max_points)) kept.push_back(places[i]);
+  for (const std::uint32_t i : spread_evenly(flat, kMostSectionPoints)) kept.push_back(places[i]);
   return kept;
 }
 
@@ -137,7 +136,7 @@ std::string cut_lines(const SceneSide& side, const Rigid3& view_from_side, const
 
 /// 1, 2 or 5 times a power of ten metres, at most a quarter of the width.
 double bar_metres(const Paper& paper) {
-  const double most = 0.25 * paper.width() / paper.px_per_m();
+  const double most = 0.25 * kSectionWidthPx / paper.px_per_m();
   const double power = std::pow(10.0, std::floor(std::log10(most)));
   for (const double factor : {5.0, 2.0}) {
     if (factor * power <= most) return factor * power;
@@ -157,13 +156,13 @@ std::string foot(const Paper& paper) {
     text += fmt::format("<path class=\"ls-w {}\" d=\"M{:.1f} {:.1f}h28\"/>", colour, x, y - 4.0);
     text += fmt::format("<text class=\"ls-soft\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + 34.0, y, name);
   };
-  entry(paper.width() - 246.0, "ls-t", "target");
-  entry(paper.width() - 122.0, "ls-s", "source");
+  entry(kSectionWidthPx - 246.0, "ls-t", "target");
+  entry(kSectionWidthPx - 122.0, "ls-s", "source");
   return text;
 }
 
 /// Which way the target's y axis points in the plan; on a national grid that is north.
-std::string north_arrow(const ReportScene& scene, const SceneView& view, const Paper& paper) {
+std::string north_arrow(const ReportScene& scene, const SceneView& view) {
   constexpr double kGridM = 1e5;
   constexpr double kLongPx = 17.0;
   const Vector3d y_axis = view.view_from_target.col(1);
@@ -171,7 +170,7 @@ std::string north_arrow(const ReportScene& scene, const SceneView& view, const P
   if (along.norm() < 0.5) return {};  // the target's z axis does not point up
   const Vector2d d = along.normalized();
   const Vector2d across(-d.y(), d.x());
-  const Vector2d middle(paper.width() - 34.0, kTitlePx + 34.0);
+  const Vector2d middle(kSectionWidthPx - 34.0, kTitlePx + 34.0);
   const Vector2d tip = middle + kLongPx * d;
   const Vector2d left = tip - 9.0 * d + 4.5 * across;
   const Vector2d right = tip - 9.0 * d - 4.5 * across;
@@ -184,10 +183,10 @@ std::string north_arrow(const ReportScene& scene, const SceneView& view, const P
   return text;
 }
 
-std::string title_of(SectionSide side, double thickness_m, bool matched) {
+std::string title_of(SectionSide side, bool matched) {
   static constexpr const char* kTitles[] = {"Plan", "Section from the front", "Section from the side"};
   const std::string place = matched ? "" : ", side by side";
-  return fmt::format("{}, {:.1f} m thick{}", kTitles[static_cast<int>(side)], thickness_m, place);
+  return fmt::format("{}, {:.1f} m thick{}", kTitles[static_cast<int>(side)], kSectionM, place);
 }
 
 }  // namespace
@@ -195,12 +194,6 @@ std::string title_of(SectionSide side, double thickness_m, bool matched) {
 const char* to_string(SectionSide side) {
   if (side == SectionSide::top) return "top";
   return side == SectionSide::front ? "front" : "side";
-}
-
-void SectionOptions::check() const {
-  if (!(thickness_m > 0)) throw_bad_option("thickness_m", thickness_m, "more than 0");
-  if (!(width_px >= 200)) throw_bad_option("width_px", width_px, "200 or more");
-  if (!(max_height_px >= 100)) throw_bad_option("max_height_px", max_height_px, "100 or more");
 }
 
 std::vector<Segment> cut_polygon(const PlanarPolygon& polygon, const Plane& cut) {
@@ -229,31 +222,29 @@ std::vector<Segment> cut_polygon(const PlanarPolygon& polygon, const Plane& cut)
   return pieces;
 }
 
-std::string section_svg(const ReportScene& scene, const SceneView& view, SectionSide side,
-                        const SectionOptions& options) {
-  options.check();
-  const Paper paper(view, side, options);
+std::string section_svg(const ReportScene& scene, const SceneView& view, SectionSide side) {
+  const Paper paper(view, side);
   const double cut = view.cut[paper.axes().depth];
   const Rigid3 view_from_target{view.view_from_target, Vector3d::Zero()};
   const Rigid3 view_from_source = view_from_target * view.target_from_source;
   const double height = kTitlePx + paper.height() + kBarPx;
-  const std::string title = title_of(side, options.thickness_m, view.matched);
+  const std::string title = title_of(side, view.matched);
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:g}\" role=\"img\" "
       "aria-label=\"{2}\">\n<style>{3}</style>\n<rect class=\"ls-paper\" width=\"{0:g}\" height=\"{1:g}\"/>\n"
       "<text class=\"ls-text\" x=\"12\" y=\"18\">{2}</text>\n",
-      paper.width(), height, title, kSectionStyle);
+      kSectionWidthPx, height, title, kSectionStyle);
   const std::string clip = fmt::format("ls-{}", to_string(side));
   svg += fmt::format(
       "<clipPath id=\"{}\"><rect y=\"{}\" width=\"{:g}\" height=\"{:g}\"/></clipPath>\n<g "
       "clip-path=\"url(#{})\">\n",
-      clip, kTitlePx, paper.width(), paper.height(), clip);
-  svg += dots(near_cut(scene.target, view_from_target, paper, cut, options), "ls-t");
-  svg += dots(near_cut(scene.source, view_from_source, paper, cut, options), "ls-s");
+      clip, kTitlePx, kSectionWidthPx, paper.height(), clip);
+  svg += dots(near_cut(scene.target, view_from_target, paper, cut), "ls-t");
+  svg += dots(near_cut(scene.source, view_from_source, paper, cut), "ls-s");
   svg += cut_lines(scene.target, view_from_target, paper, cut, "ls-t");
   svg += cut_lines(scene.source, view_from_source, paper, cut, "ls-s");
   svg += "</g>\n";
-  if (side == SectionSide::top) svg += north_arrow(scene, view, paper);
+  if (side == SectionSide::top) svg += north_arrow(scene, view);
   return svg + foot(paper) + "</svg>\n";
 }
 

@@ -12,19 +12,9 @@ namespace limen {
 enum class SectionSide { top, front, side };
 const char* to_string(SectionSide side);
 
-struct SectionOptions {
-  double thickness_m = 0.3;       ///< points within half of it of the cut are drawn
-  std::size_t max_points = 5000;  ///< per scan
-  double width_px = 720.0;
-  double max_height_px = 460.0;
-
-  void check() const;
-};
-
 /// A section through both sides as an SVG picture of its own: points near the cut, the cut walls (target
 /// whole lines, source dashed), scale bar and key. The same bytes for the same input.
-std::string section_svg(const ReportScene& scene, const SceneView& view, SectionSide side,
-                        const SectionOptions& options = {});
+std::string section_svg(const ReportScene& scene, const SceneView& view, SectionSide side);
 
 /// Points where the plane normal . x = offset cuts a flat polygon, in pairs: pieces of a straight line.
 std::vector<Segment> cut_polygon(const PlanarPolygon& polygon, const Plane& cut);
