@@ -14,16 +14,6 @@ namespace {
 
 constexpr double kNoLengthM = 1e-6;
 
-/// A segment with its direction and length at hand.
-struct Measured {
-  Vector3d a;
-  Vector3d b;
-  Vector3d direction;
-  double length = 0.0;
-
-  [[nodiscard]] Vector3d at(double metres) const { return a + metres * direction; }
-};
-
 Vector3d without(const std::optional<Vector3d>& normal, const Vector3d& x) {
   return normal ? Vector3d(x - normal->dot(x) * *normal) : x;
 }
@@ -34,8 +24,8 @@ double point_distance(const Vector3d& p, const Vector3d& a, const Vector3d& dire
 }
 
 /// 2022, equations 11 to 13, for the parts [from, to] of two segments.
-double four_end_distance(const Measured& first, double first_from, double first_to, const Measured& second,
-                         double second_from, double second_to) {
+double four_end_distance(const MeasuredSegment& first, double first_from, double first_to,
+                         const MeasuredSegment& second, double second_from, double second_to) {
   const Vector3d a1 = first.at(first_from);
   const Vector3d b1 = first.at(first_to);
   const Vector3d a2 = second.at(second_from);
@@ -50,7 +40,7 @@ double four_end_distance(const Measured& first, double first_from, double first_
 }
 
 /// The part of a segment whose abscissae on the bisector lie in [low, high], metres from its `a`.
-std::pair<double, double> part_between(const Measured& segment, double start, double slope, double low,
+std::pair<double, double> part_between(const MeasuredSegment& segment, double start, double slope, double low,
                                        double high) {
   double from = (low - start) / slope;
   double to = (high - start) / slope;
@@ -58,8 +48,8 @@ std::pair<double, double> part_between(const Measured& segment, double start, do
   return {std::clamp(from, 0.0, segment.length), std::clamp(to, 0.0, segment.length)};
 }
 
-std::optional<SegmentOverlap> overlap(const Measured& first, const Measured& second, double min_cosine,
-                                      bool whole_segments) {
+std::optional<SegmentOverlap> overlap(const MeasuredSegment& first, const MeasuredSegment& second,
+                                      double min_cosine, bool whole_segments) {
   const double cosine = first.direction.dot(second.direction);
   if (std::abs(cosine) < min_cosine) return std::nullopt;
   const Vector3d bisector = (first.direction + (cosine < 0.0 ? -1.0 : 1.0) * second.direction).normalized();
@@ -90,7 +80,10 @@ bool apart(const Vector3d& a, const Vector3d& b, const Vector3d& low, const Vect
   return false;
 }
 
-Measured measured(const Vector3d& a, const Vector3d& b) {
+/// `normal`: taken out.
+MeasuredSegment measured(const std::optional<Vector3d>& normal, const Segment& segment) {
+  const Vector3d a = without(normal, segment.a);
+  const Vector3d b = without(normal, segment.b);
   const double length = (b - a).norm();
   return {a, b, length > kNoLengthM ? Vector3d((b - a) / length) : Vector3d::UnitX(), length};
 }
@@ -119,11 +112,6 @@ void take(std::vector<std::pair<double, double>>& taken, double from, double to)
 
 }  // namespace
 
-double point_segment_distance(const Vector3d& p, const Segment& segment) {
-  const Measured s = measured(segment.a, segment.b);
-  return point_distance(p, s.a, s.direction, s.length > kNoLengthM ? s.length : 0.0);
-}
-
 void SegmentDistanceOptions::check() const {
   if (!(max_distance_m > 0.0)) throw_bad_option("max_distance_m", max_distance_m, "> 0");
   if (!(max_angle_rad > 0.0 && max_angle_rad < 0.5 * std::numbers::pi)) {
@@ -137,8 +125,8 @@ void SegmentDistanceOptions::check() const {
 std::optional<SegmentOverlap> overlap_of(const Segment& first, const Segment& second,
                                          const SegmentDistanceOptions& options) {
   options.check();
-  const Measured a = measured(without(options.wall_normal, first.a), without(options.wall_normal, first.b));
-  const Measured b = measured(without(options.wall_normal, second.a), without(options.wall_normal, second.b));
+  const MeasuredSegment a = measured(options.wall_normal, first);
+  const MeasuredSegment b = measured(options.wall_normal, second);
   if (a.length <= kNoLengthM || b.length <= kNoLengthM) return std::nullopt;
   return overlap(a, b, std::cos(options.max_angle_rad), options.whole_segments);
 }
@@ -150,7 +138,7 @@ SegmentSetMeasure::SegmentSetMeasure(const std::vector<Segment>& target,
   Vector3d low = Vector3d::Constant(1e300);
   Vector3d high = Vector3d::Constant(-1e300);
   for (const Segment& segment : target) {
-    const Prepared ready = prepare(segment.a, segment.b);
+    const MeasuredSegment ready = measured(options_.wall_normal, segment);
     if (ready.length <= kNoLengthM) continue;
     low = low.cwiseMin(0.5 * (ready.a + ready.b));
     high = high.cwiseMax(0.5 * (ready.a + ready.b));
@@ -159,19 +147,16 @@ SegmentSetMeasure::SegmentSetMeasure(const std::vector<Segment>& target,
   }
   if (target_.empty()) return;
   (high - low).maxCoeff(&axis_);
-  const auto low_end = [this](const Prepared& s) { return std::min(s.a[axis_], s.b[axis_]); };
-  std::stable_sort(target_.begin(), target_.end(),
-                   [&](const Prepared& x, const Prepared& y) { return low_end(x) < low_end(y); });
-  for (const Prepared& s : target_) longest_m_ = std::max(longest_m_, std::abs(s.b[axis_] - s.a[axis_]));
-}
-
-SegmentSetMeasure::Prepared SegmentSetMeasure::prepare(const Vector3d& a, const Vector3d& b) const {
-  const Measured s = measured(without(options_.wall_normal, a), without(options_.wall_normal, b));
-  return {s.a, s.b, s.direction, s.length};
+  const auto low_end = [this](const MeasuredSegment& s) { return std::min(s.a[axis_], s.b[axis_]); };
+  std::stable_sort(target_.begin(), target_.end(), [&](const MeasuredSegment& x, const MeasuredSegment& y) {
+    return low_end(x) < low_end(y);
+  });
+  for (const MeasuredSegment& s : target_)
+    longest_m_ = std::max(longest_m_, std::abs(s.b[axis_] - s.a[axis_]));
 }
 
 /// The term of one segment: (9) or (7), given what its cover takes off.
-double SegmentSetMeasure::weigh(const Prepared& segment, double gain) const {
+double SegmentSetMeasure::weigh(const MeasuredSegment& segment, double gain) const {
   const double squared = options_.max_distance_m * options_.max_distance_m;
   const double term = std::clamp(segment.length * squared - gain, 0.0, segment.length * squared);
   return options_.weight == SegmentWeight::length ? term : term / segment.length;
@@ -181,7 +166,7 @@ double SegmentSetMeasure::weigh(const Prepared& segment, double gain) const {
 std::size_t SegmentSetMeasure::first_near(const Vector3d& low) const {
   const auto begin = std::lower_bound(
       target_.begin(), target_.end(), low[axis_] - longest_m_,
-      [this](const Prepared& s, double value) { return std::min(s.a[axis_], s.b[axis_]) < value; });
+      [this](const MeasuredSegment& s, double value) { return std::min(s.a[axis_], s.b[axis_]) < value; });
   return static_cast<std::size_t>(begin - target_.begin());
 }
 
@@ -215,17 +200,17 @@ SetDistance SegmentSetMeasure::to(const std::vector<Segment>& source,
   std::vector<TargetPiece> on_target;
   std::vector<Piece> pieces;
   for (const Segment& segment : source) {
-    const Prepared s = prepare(target_from_source * segment.a, target_from_source * segment.b);
+    const MeasuredSegment s =
+        measured(options_.wall_normal, {target_from_source * segment.a, target_from_source * segment.b});
     if (s.length <= kNoLengthM) continue;
     const Vector3d low = (s.a.cwiseMin(s.b).array() - options_.max_distance_m).matrix();
     const Vector3d high = (s.a.cwiseMax(s.b).array() + options_.max_distance_m).matrix();
     pieces.clear();
     for (std::size_t k = first_near(low); k < target_.size(); ++k) {
-      const Prepared& t = target_[k];
+      const MeasuredSegment& t = target_[k];
       if (std::min(t.a[axis_], t.b[axis_]) > high[axis_]) break;
       if (apart(t.a, t.b, low, high)) continue;
-      const auto common = overlap({s.a, s.b, s.direction, s.length}, {t.a, t.b, t.direction, t.length},
-                                  min_cosine, options_.whole_segments);
+      const auto common = overlap(s, t, min_cosine, options_.whole_segments);
       if (!common) continue;
       const double gain = squared - common->distance_m * common->distance_m;
       if (gain <= 0.0) continue;
@@ -250,16 +235,6 @@ SetDistance SegmentSetMeasure::to(const std::vector<Segment>& source,
   }
   result.distance = std::clamp(result.distance, 0.0, result.nominal);
   return result;
-}
-
-double segment_to_set_distance(const Segment& segment, const std::vector<Segment>& set,
-                               const SegmentDistanceOptions& options) {
-  return SegmentSetMeasure(set, options).to({segment}).source_distance;
-}
-
-double segment_set_distance(const std::vector<Segment>& a, const std::vector<Segment>& b,
-                            const SegmentDistanceOptions& options) {
-  return SegmentSetMeasure(b, options).to(a).distance;
 }
 
 }  // namespace limen

@@ -41,9 +41,6 @@
 
 namespace limen {
 
-/// Distance of a point to a segment, metres (2023, eq. 5 and 6). A segment of no length is a point.
-double point_segment_distance(const Vector3d& p, const Segment& segment);
-
 /// How the terms of a set distance are weighted.
 enum class SegmentWeight {
   length,   ///< 2022, eq. 9: a segment counts by its length; m^3
@@ -74,10 +71,15 @@ struct SegmentOverlap {
 std::optional<SegmentOverlap> overlap_of(const Segment& first, const Segment& second,
                                          const SegmentDistanceOptions& options = {});
 
-/// The distance of one segment to a set (2022, eq. 9, or 2023, eq. 7): between 0 (covered at distance 0) and
-/// |L| d^2 or d^2 (nothing near).
-double segment_to_set_distance(const Segment& segment, const std::vector<Segment>& set,
-                               const SegmentDistanceOptions& options = {});
+/// A segment with its direction and length at hand.
+struct MeasuredSegment {
+  Vector3d a;
+  Vector3d b;
+  Vector3d direction;
+  double length = 0.0;
+
+  [[nodiscard]] Vector3d at(double metres) const { return a + metres * direction; }
+};
 
 /// Both sides of a set distance.
 struct SetDistance {
@@ -100,12 +102,6 @@ class SegmentSetMeasure {
                                const Rigid3& target_from_source = {}) const;
 
  private:
-  struct Prepared {
-    Vector3d a = Vector3d::Zero();
-    Vector3d b = Vector3d::Zero();
-    Vector3d direction = Vector3d::UnitX();
-    double length = 0.0;
-  };
   struct Piece {
     double from_m = 0.0;
     double to_m = 0.0;
@@ -120,20 +116,15 @@ class SegmentSetMeasure {
     Piece piece;
   };
 
-  [[nodiscard]] Prepared prepare(const Vector3d& a, const Vector3d& b) const;
-  [[nodiscard]] double weigh(const Prepared& segment, double gain) const;
+  [[nodiscard]] double weigh(const MeasuredSegment& segment, double gain) const;
   [[nodiscard]] std::size_t first_near(const Vector3d& low) const;
   [[nodiscard]] static Cover cover(std::vector<Piece>& pieces);
 
   SegmentDistanceOptions options_;
-  std::vector<Prepared> target_;  // by its low end along axis_
+  std::vector<MeasuredSegment> target_;  // by its low end along axis_
   Eigen::Index axis_ = 0;
   double longest_m_ = 0.0;  // along axis_
   double nominal_ = 0.0;
 };
-
-/// The symmetrised distance (14) between two sets in one frame.
-double segment_set_distance(const std::vector<Segment>& a, const std::vector<Segment>& b,
-                            const SegmentDistanceOptions& options = {});
 
 }  // namespace limen

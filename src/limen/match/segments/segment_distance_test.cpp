@@ -41,6 +41,18 @@ std::vector<Segment> moved(const Rigid3& pose, const std::vector<Segment>& set) 
   return result;
 }
 
+/// (14).
+double segment_set_distance(const std::vector<Segment>& a, const std::vector<Segment>& b,
+                            const SegmentDistanceOptions& options = {}) {
+  return SegmentSetMeasure(b, options).to(a).distance;
+}
+
+/// (9) or (7).
+double segment_to_set_distance(const Segment& segment, const std::vector<Segment>& set,
+                               const SegmentDistanceOptions& options = {}) {
+  return SegmentSetMeasure(set, options).to({segment}).source_distance;
+}
+
 /// (9) by walking along the segment: at every place the nearest segment that covers it takes off its gain.
 double walked_distance(const Segment& segment, const std::vector<Segment>& set,
                        const SegmentDistanceOptions& options) {
@@ -61,14 +73,6 @@ double walked_distance(const Segment& segment, const std::vector<Segment>& set,
     sum += least * step;
   }
   return sum;
-}
-
-TEST(SegmentDistance, PointToSegmentIsClampedAtTheEnds) {
-  const Segment s = along_x(1.0, 3.0);
-  EXPECT_DOUBLE_EQ(point_segment_distance(Vector3d(2.0, 0.5, 0.0), s), 0.5);
-  EXPECT_DOUBLE_EQ(point_segment_distance(Vector3d(0.0, 0.0, 0.0), s), 1.0);
-  EXPECT_DOUBLE_EQ(point_segment_distance(Vector3d(6.0, 0.0, 4.0), s), 5.0);
-  EXPECT_DOUBLE_EQ(point_segment_distance(Vector3d(0.0, 1.0, 0.0), along_x(0.0, 0.0)), 1.0);
 }
 
 TEST(SegmentDistance, ParallelSegmentsHaveTheirSpacing) {
