@@ -30,13 +30,12 @@ Vector3d up_of(const Features& features, bool gravity_known) {
 }
 
 /// The pose moved along its wall's normal until the wall has this thickness.
-HybridPose at_thickness(const OpeningPose& opening, double thickness_m, ThicknessSource source) {
+HybridPose at_thickness(const OpeningPose& opening, double thickness_m, bool assumed = false) {
   HybridPose pose;
   pose.target_from_source = opening.target_from_source;
   pose.target_from_source.translation -= (thickness_m - opening.thickness_m) * opening.wall_normal;
   pose.thickness_m = thickness_m;
-  pose.thickness_source = source;
-  pose.free_translations = source == ThicknessSource::assumed ? 1 : 0;
+  pose.free_translations = assumed ? 1 : 0;
   pose.opening = opening;
   return pose;
 }
@@ -74,8 +73,7 @@ class HybridEnumerator {
   /// All poses of one opening pose, the best held first.
   [[nodiscard]] std::vector<HybridPose> poses_of(const OpeningPose& opening) const {
     if (opening.sides == WallSides::same) {  // nothing is open
-      std::vector<HybridPose> poses = {
-          at_thickness(opening, opening.thickness_m, ThicknessSource::same_face)};
+      std::vector<HybridPose> poses = {at_thickness(opening, opening.thickness_m)};
       poses.front().support_m2 = support_at(shifts_near(opening, 0.0, 0.0), 0.0);
       return poses;
     }
@@ -89,16 +87,16 @@ class HybridEnumerator {
       if (!known && possible(pose.thickness_m)) poses.push_back(pose);
     };
     if (options_.wall_thickness_m) {
-      add(at_thickness(opening, *options_.wall_thickness_m, ThicknessSource::user));
+      add(at_thickness(opening, *options_.wall_thickness_m));
     }
-    if (opening.thickness_held) add(at_thickness(opening, opening.thickness_m, ThicknessSource::openings));
+    if (opening.thickness_held) add(at_thickness(opening, opening.thickness_m));
     for (const HybridPose& pose : held_by_planes(opening, shifts)) add(pose);
     if (const auto depth = reveal_thickness(source_, target_, opening)) {
-      add(at_thickness(opening, *depth, ThicknessSource::reveals));
+      add(at_thickness(opening, *depth));
     }
     if (poses.empty()) {
       for (const double thickness : options_.openings.thicknesses_m) {
-        add(at_thickness(opening, thickness, ThicknessSource::assumed));
+        add(at_thickness(opening, thickness, true));
       }
     }
     for (HybridPose& pose : poses)
@@ -133,7 +131,7 @@ class HybridEnumerator {
                                                        const std::vector<PlaneShift>& shifts) const {
     std::vector<HybridPose> poses;
     for (const CommonShift& shift : common_shifts(shifts, options_.offset_tolerance_m, options_.max_shifts)) {
-      poses.push_back(at_thickness(opening, opening.thickness_m - shift.shift_m, ThicknessSource::planes));
+      poses.push_back(at_thickness(opening, opening.thickness_m - shift.shift_m));
     }
     return poses;
   }

@@ -35,24 +35,13 @@ struct HybridPoseOptions {
   void check() const;
 };
 
-/// How the shift across the wall came about.
-enum class ThicknessSource : std::uint8_t {
-  assumed,   ///< nothing: the pose is free along the wall's normal
-  user,      ///< the user's wall thickness
-  reveals,   ///< sides of openings that reach from face to face
-  openings,  ///< openings in another wall
-  planes,    ///< planes that both scans saw
-  same_face  ///< both scans saw the same face of the wall: there is no thickness between them
-};
-
 /// A pose proposed by openings and planes, in the scans' local frames.
 struct HybridPose {
   Rigid3 target_from_source;
   double support_m2 = 0.0;    ///< overlap of planes that agree along the normal, bounding rectangles
   int free_translations = 0;  ///< 1 where nothing held the shift along the wall's normal
   double thickness_m = 0.0;   ///< of the wall at this pose
-  ThicknessSource thickness_source = ThicknessSource::assumed;
-  OpeningPose opening;  ///< the pose it came from
+  OpeningPose opening;        ///< the pose it came from
 };
 
 /// Poses from openings and planes. A pose is in the list by the better of its two places, by the distance
