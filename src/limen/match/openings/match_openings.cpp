@@ -14,6 +14,11 @@
 namespace limen {
 namespace {
 
+constexpr double kMaxSizeDifferenceM = 0.35;
+constexpr double kMinGapM = 0.04;  // of the two faces of a wall
+constexpr double kMaxGapM = 1.3;
+constexpr double kMaxSameFaceM = 0.08;  // of rectangles seen from the same side
+constexpr double kMaxWallAngleRad = 0.1;
 constexpr double kUnseenSigmaM = 0.9;   // an edge with this deviation or more was not seen
 constexpr double kFloorSigmaM = 0.003;  // real edges are not straighter than this
 constexpr double kSillSigmaM = 0.008;   // sills slope
@@ -158,32 +163,28 @@ Outlines outlines_of(const Opening& source, const Rigid3& pose, const Opening& t
   if (source.outline.empty() || target.outline.empty()) return outlines;
   outlines.source = outline_of(source, pose, axes);
   outlines.target = outline_of(target, {}, axes);
-  OutlineFitOptions options;
-  options.growth_sigma_m = opposite ? kSplaySigmaM : kFloorSigmaM;
-  outlines.fit = fit_outlines(outlines.source, outlines.target, options);
+  outlines.fit = fit_outlines(outlines.source, outlines.target, opposite ? kSplaySigmaM : kFloorSigmaM);
   return outlines;
 }
 
 /// Whether the two walls can be one: from its two sides, or from the same.
-bool walls_agree(OpeningMatch& match, const Rectangle& a, const Rectangle& b,
-                 const OpeningMatchOptions& options) {
+bool walls_agree(OpeningMatch& match, const Rectangle& a, const Rectangle& b) {
   const Vector3d source_normal = a.across.cross(a.up);  // towards the source's scanner
   const Vector3d target_normal = b.across.cross(b.up);
   const double cosine = source_normal.dot(target_normal);
-  if (std::abs(cosine) < std::cos(options.max_angle_rad)) return false;
-  if (a.up.dot(b.up) < std::cos(options.max_angle_rad)) return false;
+  if (std::abs(cosine) < std::cos(kMaxWallAngleRad)) return false;
+  if (a.up.dot(b.up) < std::cos(kMaxWallAngleRad)) return false;
   const Vector3d middle = a.origin + 0.5 * (a.width * a.across + a.height * a.up);
   match.gap_m = -target_normal.dot(middle - b.origin);
   match.opposite = cosine < 0.0;
-  if (!match.opposite) return std::abs(match.gap_m) <= options.max_same_face_m;
-  return match.gap_m >= options.min_gap_m && match.gap_m <= options.max_gap_m;
+  if (!match.opposite) return std::abs(match.gap_m) <= kMaxSameFaceM;
+  return match.gap_m >= kMinGapM && match.gap_m <= kMaxGapM;
 }
 
 std::optional<OpeningMatch> match_of(const Opening& source, const Rectangle& a, const Rigid3& pose,
-                                     const Opening& target, const Rectangle& b,
-                                     const OpeningMatchOptions& options) {
+                                     const Opening& target, const Rectangle& b) {
   OpeningMatch match;
-  if (!walls_agree(match, a, b, options)) return std::nullopt;
+  if (!walls_agree(match, a, b)) return std::nullopt;
   const Edges from = edges_of(source, a, b);
   const Edges to = edges_of(target, b, b);
   std::array<Edge, 4> off;
@@ -193,7 +194,7 @@ std::optional<OpeningMatch> match_of(const Opening& source, const Rectangle& a, 
   };
   const auto alike = [&](double own, double other, std::size_t low, std::size_t high) {
     return !both(low, high) ||
-           std::abs(own - other) <= options.max_size_difference_m + off[low].sigma + off[high].sigma;
+           std::abs(own - other) <= kMaxSizeDifferenceM + off[low].sigma + off[high].sigma;
   };
   if (!alike(a.height, b.height, 0, 2) || !alike(a.width, b.width, 3, 1)) return std::nullopt;
   const Outlines outlines = outlines_of(source, pose, target, b, match.opposite);
@@ -234,11 +235,9 @@ std::optional<OpeningMatch> match_of(const Opening& source, const Rectangle& a, 
 
 }  // namespace
 
-OpeningMatching::OpeningMatching(const Features& source, const Features& target,
-                                 const OpeningMatchOptions& options)
+OpeningMatching::OpeningMatching(const Features& source, const Features& target)
     : sources_(source.openings),
       targets_(target.openings),
-      options_(options),
       source_rectangles_(rectangles_of(source.openings)),
       target_rectangles_(rectangles_of(target.openings)) {}
 
@@ -247,12 +246,11 @@ std::vector<OpeningMatch> OpeningMatching::under(const Rigid3& target_from_sourc
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Rectangle& own = source_rectangles_[i];
     const Vector3d corner = target_from_source * own.origin;
-    const double reach = options_.max_gap_m + own.width + own.height + gate_m;
+    const double reach = kMaxGapM + own.width + own.height + gate_m;
     for (std::size_t k = 0; k < targets_.size(); ++k) {
       const Rectangle& b = target_rectangles_[k];
       if ((b.origin - corner).squaredNorm() > (reach + b.width) * (reach + b.width)) continue;
-      auto match =
-          match_of(sources_[i], moved(own, target_from_source), target_from_source, targets_[k], b, options_);
+      auto match = match_of(sources_[i], moved(own, target_from_source), target_from_source, targets_[k], b);
       if (!match || std::hypot(match->shift_across_m, match->shift_up_m) > gate_m) continue;
       match->source = static_cast<int>(i);
       match->target = static_cast<int>(k);

@@ -40,18 +40,10 @@ struct OpeningFrame {
   double height = 0.0;
 };
 
-struct OpeningMatchOptions {
-  double max_size_difference_m = 0.35;
-  double min_gap_m = 0.04;  ///< of the two faces of a wall
-  double max_gap_m = 1.3;
-  double max_same_face_m = 0.08;  ///< of rectangles seen from the same side
-  double max_angle_rad = 0.1;     ///< between the walls
-};
-
 /// The openings of two scans, laid out once to be matched under many poses. Refers to both features.
 class OpeningMatching {
  public:
-  OpeningMatching(const Features& source, const Features& target, const OpeningMatchOptions& options = {});
+  OpeningMatching(const Features& source, const Features& target);
 
   /// One-to-one matches, nearest first; middles farther apart within the wall than `gate_m` are no match.
   /// Openings that both scans saw arched or round match only where their outlines have one shape, and these
@@ -62,7 +54,6 @@ class OpeningMatching {
  private:
   const std::vector<Opening>& sources_;
   const std::vector<Opening>& targets_;
-  OpeningMatchOptions options_;
   std::vector<OpeningFrame> source_rectangles_;  ///< each in its own scan's frame
   std::vector<OpeningFrame> target_rectangles_;
 };

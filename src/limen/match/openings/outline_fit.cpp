@@ -11,6 +11,8 @@ namespace limen {
 namespace {
 
 constexpr int kRounds = 6;
+constexpr double kPointSigmaM = 0.02;  // of a point of an outline
+constexpr double kStepM = 0.06;        // between the points that are compared
 // Neighbouring points of an outline come from the same samples: that many say about what one says.
 constexpr double kAlike = 6.0;
 
@@ -38,12 +40,12 @@ Nearest nearest(const Ring& ring, const Vector2d& p) {
   return best;
 }
 
-Ring points_along(const Ring& ring, double step_m) {
+Ring points_along(const Ring& ring) {
   Ring points;
   for (std::size_t k = 0; k < ring.size(); ++k) {
     const Vector2d& a = ring[k];
     const Vector2d side = ring[(k + 1) % ring.size()] - a;
-    const int count = std::max(1, static_cast<int>(std::lround(side.norm() / step_m)));
+    const int count = std::max(1, static_cast<int>(std::lround(side.norm() / kStepM)));
     for (int i = 0; i < count; ++i) points.push_back(a + (i + 0.5) / count * side);
   }
   return points;
@@ -62,10 +64,9 @@ double left_over(const Ring& points, const Ring& ring, double growth_m) {
 
 }  // namespace
 
-std::optional<OutlineFit> fit_outlines(const Ring& first, const Ring& second,
-                                       const OutlineFitOptions& options) {
+std::optional<OutlineFit> fit_outlines(const Ring& first, const Ring& second, double growth_sigma_m) {
   if (first.size() < 3 || second.size() < 3) return std::nullopt;
-  const Ring points = points_along(first, options.step_m);
+  const Ring points = points_along(first);
   OutlineFit fit;
   Matrix3d information = Matrix3d::Zero();
   for (int round = 0; round < kRounds; ++round) {
@@ -82,11 +83,11 @@ std::optional<OutlineFit> fit_outlines(const Ring& first, const Ring& second,
       squares += std::pow(gap - fit.growth_m, 2);
     }
     fit.rms_m = std::sqrt(squares / static_cast<double>(points.size()));
-    const double point = kAlike * std::pow(std::max(options.point_sigma_m, fit.rms_m), 2);
+    const double point = kAlike * std::pow(std::max(kPointSigmaM, fit.rms_m), 2);
     information /= point;
     right /= point;
     // The growth starts anew each round, near zero a priori; the shift is what is still to go.
-    information(2, 2) += 1.0 / (options.growth_sigma_m * options.growth_sigma_m);
+    information(2, 2) += 1.0 / (growth_sigma_m * growth_sigma_m);
     const Vector3d step = solve_symmetric(information, right);
     fit.shift_m += step.head<2>();
     fit.growth_m = step.z();
@@ -94,8 +95,8 @@ std::optional<OutlineFit> fit_outlines(const Ring& first, const Ring& second,
   Ring moved = first;
   for (Vector2d& p : moved) p += fit.shift_m;
   // Both ways: the corners of a rectangle are far from an arch, but no place of the arch is from it.
-  fit.rms_m = std::max(left_over(points_along(moved, options.step_m), second, -fit.growth_m),
-                       left_over(points_along(second, options.step_m), moved, fit.growth_m));
+  fit.rms_m = std::max(left_over(points_along(moved), second, -fit.growth_m),
+                       left_over(points_along(second), moved, fit.growth_m));
   const Matrix3d covariance = inverse_of(information);
   fit.sigma_m = covariance.diagonal().head<2>().cwiseMax(0.0).cwiseSqrt();
   return fit;

@@ -17,16 +17,10 @@ struct OutlineFit {
   double rms_m = 0.0;     ///< of what is left between the two, root mean square: large for another shape
 };
 
-struct OutlineFitOptions {
-  double growth_sigma_m = 0.05;  ///< how much the two may differ in width, each way, > 0
-  double point_sigma_m = 0.02;   ///< of a point of an outline, > 0
-  double step_m = 0.06;          ///< between the points that are compared, > 0
-};
-
 /// Least squares over the points of the first outline against the nearest places of the second: a crown and
 /// its shoulders hold the shift both ways, where a rectangle would only have its highest point. None where an
-/// outline has fewer than three points. Rings counter-clockwise, plane coordinates, metres.
-std::optional<OutlineFit> fit_outlines(const Ring& first, const Ring& second,
-                                       const OutlineFitOptions& options = {});
+/// outline has fewer than three points. Rings counter-clockwise, plane coordinates, metres. `growth_sigma_m`:
+/// how much the two may differ in width, each way, > 0.
+std::optional<OutlineFit> fit_outlines(const Ring& first, const Ring& second, double growth_sigma_m);
 
 }  // namespace limen

@@ -12,6 +12,8 @@
 namespace limen {
 namespace {
 
+constexpr double kGrowthSigmaM = 0.05;
+
 /// A window with a semicircular head (or an elliptic one), its foot in the middle of (0, 0), grown all round.
 Ring arch(double width, double height, double rise, double growth = 0.0) {
   const double half = 0.5 * width + growth;
@@ -37,7 +39,7 @@ Ring noisy(Ring ring, std::uint64_t seed) {
 
 TEST(OutlineFit, FindsTheShiftOfAnArchAndItsGrowth) {
   const Vector2d shift(0.06, -0.04);
-  const auto fit = fit_outlines(moved(arch(1.0, 1.8, 0.5), -shift), arch(1.0, 1.8, 0.5, 0.03));
+  const auto fit = fit_outlines(moved(arch(1.0, 1.8, 0.5), -shift), arch(1.0, 1.8, 0.5, 0.03), kGrowthSigmaM);
   ASSERT_TRUE(fit);
   EXPECT_LT((fit->shift_m - shift).norm(), 0.003);
   EXPECT_NEAR(fit->growth_m, 0.03, 0.006);
@@ -48,7 +50,7 @@ TEST(OutlineFit, TheCrownHoldsTheHeightAsWellAsItSays) {
   double worst = 0.0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const auto fit = fit_outlines(noisy(moved(arch(1.0, 1.8, 0.5), {0.05, 0.05}), seed),
-                                  noisy(arch(1.0, 1.8, 0.5), 99 + seed));
+                                  noisy(arch(1.0, 1.8, 0.5), 99 + seed), kGrowthSigmaM);
     ASSERT_TRUE(fit);
     const Vector2d off = fit->shift_m + Vector2d(0.05, 0.05);
     EXPECT_LT(fit->sigma_m.maxCoeff(), 0.02);
@@ -65,11 +67,13 @@ TEST(OutlineFit, AnotherShapeIsLeftOver) {
                         0.9 + 0.5 * std::sin(std::numbers::pi * k / 16));
     return ring;
   }();
-  EXPECT_GT(fit_outlines(arch(1.0, 1.4, 0.5), round)->rms_m, 0.05);
-  EXPECT_GT(fit_outlines(arch(1.2, 2.0, 0.6), {{-0.6, 0.0}, {0.6, 0.0}, {0.6, 2.0}, {-0.6, 2.0}})->rms_m,
-            0.04);
-  EXPECT_LT(fit_outlines(round, moved(round, {0.1, 0.1}))->rms_m, 0.01);
-  EXPECT_FALSE(fit_outlines({}, round));
+  EXPECT_GT(fit_outlines(arch(1.0, 1.4, 0.5), round, kGrowthSigmaM)->rms_m, 0.05);
+  EXPECT_GT(
+      fit_outlines(arch(1.2, 2.0, 0.6), {{-0.6, 0.0}, {0.6, 0.0}, {0.6, 2.0}, {-0.6, 2.0}}, kGrowthSigmaM)
+          ->rms_m,
+      0.04);
+  EXPECT_LT(fit_outlines(round, moved(round, {0.1, 0.1}), kGrowthSigmaM)->rms_m, 0.01);
+  EXPECT_FALSE(fit_outlines({}, round, kGrowthSigmaM));
 }
 
 }  // namespace

@@ -4,20 +4,13 @@
 
 #include <cmath>
 
-#include "limen/base/error.h"
-
 namespace limen {
 
-void TranslationOptions::check() const {
-  if (!(min_information > 0.0 && min_information < 1.0 / 3.0)) {
-    throw_bad_option("min_information", min_information, "in (0, 1/3)");
-  }
-}
-
 TranslationFit translation_from_planes(const Matrix3d& target_from_source_rotation,
-                                       const std::vector<PlanePair>& pairs, const Vector3d& start,
-                                       const TranslationOptions& options) {
-  options.check();
+                                       const std::vector<PlanePair>& pairs, const Vector3d& start) {
+  // A direction is observed when its share of the information (eigenvalue of the weighted mean of N N^T)
+  // exceeds this: one plane in three tilted by 5.4 degrees.
+  constexpr double kMinInformation = 0.003;
   const auto gap = [&](const PlanePair& pair, const Vector3d& translation) {
     return -pair.target.signed_distance(target_from_source_rotation * pair.source_point + translation);
   };
@@ -28,7 +21,7 @@ TranslationFit translation_from_planes(const Matrix3d& target_from_source_rotati
     sums.right_side += pair.weight * gap(pair, start) * pair.target.normal;  // times N^T
     sums.weight += pair.weight;
   }
-  TranslationFit fit = solve_translation(sums, start, options.min_information);
+  TranslationFit fit = solve_translation(sums, start, kMinInformation);
   if (!(sums.weight > 0.0)) return fit;
   double sum = 0.0;
   for (const PlanePair& pair : pairs) sum += pair.weight * std::pow(gap(pair, fit.translation), 2);

@@ -17,14 +17,6 @@ struct PlanePair {
   double weight = 1.0;  ///< >= 0; for example the area in common
 };
 
-struct TranslationOptions {
-  /// A direction is observed when its share of the information (eigenvalue of the weighted mean of N N^T)
-  /// exceeds this, in (0, 1/3): 0.003 is one plane in three tilted by 5.4 degrees.
-  double min_information = 0.003;
-
-  void check() const;
-};
-
 /// Djahel, Monasse, Vallet 2021, section 3.4, equations 20 to 22: the shift that lays the turned source
 /// planes on the target planes, N_l . (R p_l + T) = d_l, by least squares over any number of pairs.
 ///
@@ -34,7 +26,6 @@ struct TranslationOptions {
 /// directions that the planes do not hold are named and left as in `start`.
 TranslationFit translation_from_planes(const Matrix3d& target_from_source_rotation,
                                        const std::vector<PlanePair>& pairs,
-                                       const Vector3d& start = Vector3d::Zero(),
-                                       const TranslationOptions& options = {});
+                                       const Vector3d& start = Vector3d::Zero());
 
 }  // namespace limen
