@@ -152,7 +152,7 @@ class Rows {
     if (score.agreeing_m2 < kLeastAgreeing_m2) return;
     const auto start = std::chrono::steady_clock::now();
     const CommonSurfaces surfaces =
-        common_surfaces(source, BuiltPlanes(source), target, BuiltPlanes(target), pose);
+        CommonSurfaceFinder(source, BuiltPlanes(source), target, BuiltPlanes(target))(pose);
     const double nats = built_nats(built_evidence(surfaces.all), {bends_beforehand(0.0)});
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     const SeenClutter clutter = seen_clutter(source, target, pose);

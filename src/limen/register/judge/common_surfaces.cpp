@@ -335,10 +335,4 @@ CommonSurfaces CommonSurfaceFinder::operator()(const Rigid3& target_from_source)
   return chosen(std::move(candidates));
 }
 
-CommonSurfaces common_surfaces(const ScanView& source, const BuiltPlanes& built_source,
-                               const ScanView& target, const BuiltPlanes& built_target,
-                               const Rigid3& target_from_source) {
-  return CommonSurfaceFinder(source, built_source, target, built_target)(target_from_source);
-}
-
 }  // namespace limen

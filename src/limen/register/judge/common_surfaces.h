@@ -36,9 +36,4 @@ class CommonSurfaceFinder {
   std::unique_ptr<Walls> walls_;
 };
 
-/// The same of one pose.
-CommonSurfaces common_surfaces(const ScanView& source, const BuiltPlanes& built_source,
-                               const ScanView& target, const BuiltPlanes& built_target,
-                               const Rigid3& target_from_source);
-
 }  // namespace limen

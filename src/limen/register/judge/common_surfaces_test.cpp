@@ -51,7 +51,7 @@ CommonSurfaces asked(const Features& source, const Features& target, const Rigid
   from.features = &source;
   ScanView to;
   to.features = &target;
-  return common_surfaces(from, BuiltPlanes(from), to, BuiltPlanes(to), pose);
+  return CommonSurfaceFinder(from, BuiltPlanes(from), to, BuiltPlanes(to))(pose);
 }
 
 TEST(CommonSurfaces, HowFarAWallStandsOffIsMeasured) {
