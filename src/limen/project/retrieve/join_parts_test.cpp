@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "support/drawn_rooms.h"
 #include <gtest/gtest.h>
 
-#include "limen/project/retrieve/drawn_rooms.h"
 #include "limen/project/retrieve/plan_view.h"
 #include "limen/project/retrieve/seen_space.h"
 

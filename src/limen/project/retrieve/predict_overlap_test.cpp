@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
+#include "support/drawn_rooms.h"
 #include <gtest/gtest.h>
 
 #include "limen/project/retrieve/choose_pairs.h"
-#include "limen/project/retrieve/drawn_rooms.h"
 
 namespace limen {
 namespace {

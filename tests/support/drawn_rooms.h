@@ -6,7 +6,7 @@
 
 namespace limen {
 
-/// For tests: a rectangle of tiles, `wide` x `high` metres about `middle`, seen from where its normal points
+/// A rectangle of tiles, `wide` x `high` metres about `middle`, seen from where its normal points
 /// to.
 inline PlaneDigest rectangle(const Vector3d& middle, const Vector3d& normal, double wide, double high) {
   PlaneDigest digest;
@@ -21,7 +21,7 @@ inline PlaneDigest rectangle(const Vector3d& middle, const Vector3d& normal, dou
   return digest;
 }
 
-/// For tests: the four walls and the floor of a room, seen from its middle, `high` metres.
+/// The four walls and the floor of a room, seen from its middle, `high` metres.
 inline ScanDigest drawn_room(const Vector3d& middle, double wide, double deep, double high = 2.5) {
   ScanDigest scan;
   const double x = 0.5 * wide;
@@ -36,7 +36,7 @@ inline ScanDigest drawn_room(const Vector3d& middle, double wide, double deep, d
   return scan;
 }
 
-/// For tests: a turn about the vertical, radians, then a shift.
+/// A turn about the vertical, radians, then a shift.
 inline Rigid3 turn_and_shift(double turn, const Vector3d& shift) {
   return {rotation_exp(Vector3d(0, 0, turn)), shift};
 }
