@@ -199,9 +199,7 @@ Fit compare(const Opening& opening, const Wanted& wanted) {
   const Vector3d upright = wanted.corners[3] - wanted.corners[0];
   const Vector2d size(across.norm(), upright.norm());
   const PlaneFrame frame{wanted.corners[0], across / size.x(), upright / size.y()};
-  const Vector3d middle =
-      0.25 * (opening.corners[0] + opening.corners[1] + opening.corners[2] + opening.corners[3]);
-  if (std::abs((middle - wanted.corners[0]).dot(wanted.normal)) > 0.1) return fit;
+  if (std::abs((opening.middle() - wanted.corners[0]).dot(wanted.normal)) > 0.1) return fit;
   const Vector3d normal =
       (opening.corners[1] - opening.corners[0]).cross(opening.corners[3] - opening.corners[0]);
   if (normal.dot(wanted.normal) < 0.9 * normal.norm()) return fit;

@@ -8,6 +8,7 @@
 
 #include "limen/base/parallel.h"
 #include "limen/base/random.h"
+#include "limen/geometry/polygon_clip.h"
 
 namespace limen {
 namespace {
@@ -25,12 +26,7 @@ FaceTiles::FaceTiles(const FaceIndex& index, double tile_m) : index_(index), gri
   std::size_t total = 0;
   for (std::size_t k = 0; k < grids_.size(); ++k) {
     Grid& grid = grids_[k];
-    Vector2d low = Vector2d::Constant(1e300);
-    Vector2d high = Vector2d::Constant(-1e300);
-    for (const Vector2d& p : index.face(static_cast<int>(k)).outline.outer) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
+    const auto [low, high] = box_of(index.face(static_cast<int>(k)).outline.outer);
     if (low.x() > high.x()) continue;
     const Vector2d size = high - low;
     grid.low = low;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/deviation/model_faces.h"
 
+#include "limen/geometry/polygon_clip.h"
+
 namespace limen {
 namespace {
 
@@ -41,12 +43,7 @@ std::vector<bool> closed_elements(const BimModel& model) {
 
 /// Middle of the box round a face's outline.
 Vector3d middle_of(const BimFace& face) {
-  Vector2d low = Vector2d::Constant(1e300);
-  Vector2d high = Vector2d::Constant(-1e300);
-  for (const Vector2d& p : face.outline.outer) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
+  const auto [low, high] = box_of(face.outline.outer);
   return face.frame.to_space(0.5 * (low + high));
 }
 

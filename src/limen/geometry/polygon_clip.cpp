@@ -350,6 +350,12 @@ std::vector<Polygon> projected(const std::vector<Polygon>& polygons, const Plane
   return result;
 }
 
+Box2 box_of(const Ring& ring) {
+  Box2 box;
+  for (const Vector2d& p : ring) box.add(p);
+  return box;
+}
+
 Box2 box_of(const std::vector<Polygon>& polygons) {
   Box2 box;
   for (const Polygon& polygon : polygons) {

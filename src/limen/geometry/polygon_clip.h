@@ -57,6 +57,7 @@ struct Box2 {
            low.y() >= other.high.y() || other.low.y() >= high.y();
   }
 };
+Box2 box_of(const Ring& ring);
 Box2 box_of(const std::vector<Polygon>& polygons);
 
 }  // namespace limen

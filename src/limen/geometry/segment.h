@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "limen/geometry/rigid.h"
 
 namespace limen {
@@ -14,5 +16,11 @@ struct Segment {
   [[nodiscard]] double length() const { return (b - a).norm(); }
   [[nodiscard]] Vector3d direction() const { return (b - a).normalized(); }
 };
+
+inline double total_length(const std::vector<Segment>& segments) {
+  double sum = 0.0;
+  for (const Segment& segment : segments) sum += segment.length();
+  return sum;
+}
 
 }  // namespace limen

@@ -37,6 +37,8 @@ struct Opening {
   bool reveal_complete = false;
   /// The seen outline in the wall where it is not a rectangle (arched, round).
   std::vector<Vector3d> outline;
+
+  [[nodiscard]] Vector3d middle() const { return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]); }
 };
 
 /// A small piece of surface: the mean of the points in one tile of a plane, or of one cube of clutter.

@@ -23,12 +23,6 @@ constexpr double kVerticalShare = 0.1;    // of it, that must be vertical
 constexpr std::size_t kListedOthers = 8;  // different poses that are listed though they are no rivals
 constexpr double kUprightEvidence = 0.8;  // an upright pose as good as this is believed before a tilted one
 
-double total_length(const std::vector<Segment>& segments) {
-  double sum = 0.0;
-  for (const Segment& segment : segments) sum += segment.length();
-  return sum;
-}
-
 /// Whether most of a set is vertical or level.
 bool looks_level(const std::vector<Segment>& segments) {
   double vertical = 0.0;

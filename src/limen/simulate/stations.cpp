@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "limen/base/error.h"
+#include "limen/geometry/polygon_clip.h"
 #include "limen/simulate/buildings/building.h"
 
 namespace limen {
@@ -94,12 +95,7 @@ class Surveyor {
 
   Vector3d random_point(std::size_t room) {
     const Room& r = building_.plan.rooms[room];
-    Vector2d low = r.outline[0];
-    Vector2d high = low;
-    for (const Vector2d& p : r.outline) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
+    const auto [low, high] = box_of(r.outline);
     const double x = random_.uniform(low.x(), high.x());
     const double y = random_.uniform(low.y(), high.y());
     return {x, y, r.floor_m + random_.uniform(1.35, 1.75)};

@@ -64,19 +64,15 @@ double foot_beside(const WallEvidence& evidence, const OpeningGrid& grid, const 
   return heights[kEnough - 1];
 }
 
-/// The middle of an opening, and whether two are one hole seen in two planes of one wall (its face and its
-/// frames, a plinth and the wall behind).
-Vector3d middle_of(const Opening& opening) {
-  return 0.25 * (opening.corners[0] + opening.corners[1] + opening.corners[2] + opening.corners[3]);
-}
-
+/// Whether two are one hole seen in two planes of one wall (its face and its frames, a plinth and the wall
+/// behind).
 bool same_hole(const Opening& a, const Opening& b) {
   constexpr double kWall_m = 0.6;
   const Vector3d u = (a.corners[1] - a.corners[0]).normalized();
   const Vector3d v = (a.corners[3] - a.corners[0]).normalized();
   const Vector3d other = (b.corners[1] - b.corners[0]).normalized();
   if (u.dot(other) < 0.99) return false;
-  const Vector3d between = middle_of(b) - middle_of(a);
+  const Vector3d between = b.middle() - a.middle();
   if (std::abs(between.dot(u.cross(v))) > kWall_m) return false;
   const auto common = [&](const Vector3d& axis, const Vector3d& a_side, const Vector3d& b_side) {
     const double a_half = 0.5 * a_side.norm();

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "limen/geometry/linear.h"
+#include "limen/geometry/polygon_clip.h"
 #include "limen/match/openings/outline_fit.h"
 
 namespace limen {
@@ -131,16 +132,11 @@ Ring outline_of(const Opening& opening, const Rigid3& pose, const Rectangle& axe
 /// A lower corner of the box that the outline does not reach: bent all round, not only at the head.
 bool bent_all_round(const Ring& ring) {
   constexpr double kOfWidth = 0.1;
-  Vector2d low = ring.front();
-  Vector2d high = ring.front();
-  for (const Vector2d& p : ring) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
+  const Box2 box = box_of(ring);
   const double nearest =
       std::accumulate(ring.begin(), ring.end(), 1e300,
-                      [&](double least, const Vector2d& p) { return std::min(least, (p - low).norm()); });
-  return nearest > kOfWidth * (high - low).minCoeff();
+                      [&](double least, const Vector2d& p) { return std::min(least, (p - box.low).norm()); });
+  return nearest > kOfWidth * (box.high - box.low).minCoeff();
 }
 
 /// The better known one: edges and outline come from the same samples, so that they do not add up.

@@ -13,10 +13,6 @@ namespace {
 
 constexpr double kMaxTiltSine = 0.5;  // planes that lean by more than 30 degrees are no walls
 
-Vector3d centre_of(const Opening& opening) {
-  return 0.25 * (opening.corners[0] + opening.corners[1] + opening.corners[2] + opening.corners[3]);
-}
-
 Vector3d right_of(const Opening& opening) {
   return opening.corners[1] - opening.corners[0] + opening.corners[2] - opening.corners[3];
 }
@@ -52,7 +48,7 @@ std::vector<Group> group_by_wall(const Features& features, const WallWithOpening
     const Vector3d normal = normal_of(features, opening);
     if (normal.isZero()) continue;
     if (options.up && std::abs(normal.dot(*options.up)) > kMaxTiltSine) continue;
-    const Vector3d centre = centre_of(opening);
+    const Vector3d centre = opening.middle();
     const auto same = std::find_if(groups.begin(), groups.end(), [&](const Group& group) {
       return group.normal.dot(normal) > min_cosine &&
              std::abs(normal.dot(centre - group.point)) < options.same_wall_m;
@@ -85,7 +81,7 @@ PlaneFrame frame_of(const Features& features, const Group& group, int facade,
   Vector3d normal = group.normal;
   for (const int i : group.openings) {
     const Opening& opening = features.openings[static_cast<std::size_t>(i)];
-    origin += centre_of(opening) / static_cast<double>(group.openings.size());
+    origin += opening.middle() / static_cast<double>(group.openings.size());
     up += up_of(opening);
   }
   if (facade >= 0) {

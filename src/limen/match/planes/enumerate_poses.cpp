@@ -81,6 +81,16 @@ class PoseEnumerator {
   }
 
  private:
+  /// The axes on which planes meet, largest first.
+  [[nodiscard]] std::vector<AxisPairs> axes_under(const Matrix3d& rotation) const {
+    std::vector<AxisPairs> axes;
+    for (const AxisDirection& direction : target_axes_) axes.push_back(pairs_along(direction, rotation));
+    std::erase_if(axes, [](const AxisPairs& a) { return a.pairs.empty(); });
+    std::stable_sort(axes.begin(), axes.end(),
+                     [](const AxisPairs& a, const AxisPairs& b) { return a.weight_m2 > b.weight_m2; });
+    return axes;
+  }
+
   [[nodiscard]] std::vector<Matrix3d> all_rotations() const {
     RotationOptions rotation_options;
     rotation_options.gravity_known = options_.gravity_known;
@@ -90,11 +100,7 @@ class PoseEnumerator {
   }
 
   [[nodiscard]] std::vector<PoseCandidate> sliding_poses_of(const Matrix3d& rotation, double step_m) const {
-    std::vector<AxisPairs> axes;
-    for (const AxisDirection& direction : target_axes_) axes.push_back(pairs_along(direction, rotation));
-    std::erase_if(axes, [](const AxisPairs& a) { return a.pairs.empty(); });
-    std::stable_sort(axes.begin(), axes.end(),
-                     [](const AxisPairs& a, const AxisPairs& b) { return a.weight_m2 > b.weight_m2; });
+    std::vector<AxisPairs> axes = axes_under(rotation);
     if (axes.size() > kSlidingAxes) axes.resize(kSlidingAxes);
     std::vector<PoseCandidate> poses;
     for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -219,11 +225,7 @@ class PoseEnumerator {
 
   [[nodiscard]] std::vector<PoseCandidate> poses_of(const Matrix3d& rotation,
                                                     const LeastPrecedence& of_all) const {
-    std::vector<AxisPairs> axes;
-    for (const AxisDirection& direction : target_axes_) axes.push_back(pairs_along(direction, rotation));
-    std::erase_if(axes, [](const AxisPairs& a) { return a.pairs.empty(); });
-    std::stable_sort(axes.begin(), axes.end(),
-                     [](const AxisPairs& a, const AxisPairs& b) { return a.weight_m2 > b.weight_m2; });
+    std::vector<AxisPairs> axes = axes_under(rotation);
     std::vector<std::size_t> basis = basis_of(axes);
     const int open = 3 - static_cast<int>(basis.size());
     if (open > 1) return {};

@@ -225,12 +225,6 @@ class SegmentEnumerator {
   Vector3d middle_ = Vector3d::Zero();
 };
 
-double total_length(const std::vector<Segment>& segments) {
-  double sum = 0.0;
-  for (const Segment& segment : segments) sum += segment.length();
-  return sum;
-}
-
 }  // namespace
 
 void SegmentPoseOptions::check() const {

@@ -18,12 +18,6 @@ constexpr double kFitFixedRad = 0.01;  // a turn that is known less well is open
 constexpr double kFitFixedM = 0.1;     // a shift likewise
 constexpr int kSteps = 8;
 
-Matrix3d skew(const Vector3d& v) {
-  Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
 using Taken = std::vector<bool>;
 
 /// A pose, what it fits, and how well.

@@ -84,14 +84,10 @@ class Joiner {
     return static_cast<std::int32_t>(all_.planes.size() - 1);
   }
 
-  static Vector3d middle(const Opening& o) {
-    return 0.25 * (o.corners[0] + o.corners[1] + o.corners[2] + o.corners[3]);
-  }
-
   /// Of an opening seen twice the better view is kept.
   void enter(const Opening& opening) {
     for (Opening& known : all_.openings) {
-      if (known.facade != opening.facade || (middle(known) - middle(opening)).norm() > kSameOpeningM)
+      if (known.facade != opening.facade || (known.middle() - opening.middle()).norm() > kSameOpeningM)
         continue;
       if (opening.evidence > known.evidence) known = opening;
       return;

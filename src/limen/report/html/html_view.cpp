@@ -83,10 +83,6 @@ Matrix3d along_walls(const SceneSide& side, const std::vector<int>& counted = {}
   return rotation_exp(Vector3d(0, 0, -angle)) * level;
 }
 
-Vector3d middle_of(const Opening& opening) {
-  return 0.25 * (opening.corners[0] + opening.corners[1] + opening.corners[2] + opening.corners[3]);
-}
-
 /// Sections go through the first opening that both sides saw, else through the middle at eye height.
 Vector3d place_of_cut(const ReportScene& scene, const RegistrationResult& result, const SceneView& view) {
   Vector3d cut = 0.5 * (view.low + view.high);
@@ -94,7 +90,7 @@ Vector3d place_of_cut(const ReportScene& scene, const RegistrationResult& result
   const std::vector<Opening>& openings = scene.target.pictured.features.openings;
   for (const MatchedOpenings& match : result.openings) {
     if (match.target < 0 || static_cast<std::size_t>(match.target) >= openings.size()) continue;
-    const Vector3d at = view.view_from_target * middle_of(openings[static_cast<std::size_t>(match.target)]);
+    const Vector3d at = view.view_from_target * openings[static_cast<std::size_t>(match.target)].middle();
     if (((at - view.low).array() > 0).all() && ((view.high - at).array() > 0).all()) return at;
   }
   return cut;

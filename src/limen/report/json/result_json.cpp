@@ -68,10 +68,6 @@ Json causes_json(const RegistrationReport& report) {
   });
 }
 
-Json probability_json(const std::optional<double>& probability) {
-  return probability ? Json(*probability) : Json();
-}
-
 Json unobserved_json(const std::vector<UnobservedFreedom>& freedoms) {
   return list_json(freedoms, [&](const UnobservedFreedom& freedom) -> Json {
     return {{"kind", freedom.rotation ? "rotation" : "translation"},
@@ -107,7 +103,7 @@ Json evidence_json(const Hypothesis& pose) {
 Json alternatives_json(const std::vector<Hypothesis>& alternatives) {
   return list_json(alternatives, [&](const Hypothesis& pose) -> Json {
     return {{"target_from_source", pose_json(pose.target_from_source)},
-            {"probability", probability_json(pose.probability)},
+            {"probability", json_of(pose.probability)},
             {"sigma", sigma_json(pose.sigma)},
             {"tie", pose.tie},
             {"evidence", evidence_json(pose)}};
@@ -208,7 +204,7 @@ std::string result_json(const RegistrationReport& report) {
   json["reason"] = result.reason;
   json["target_from_source"] = found ? pose_json(result.best.target_from_source) : Json();
   json["sigma"] = found && !result.published ? sigma_json(result.sigma) : Json();
-  json["probability"] = found && !result.published ? probability_json(result.best.probability) : Json();
+  json["probability"] = found && !result.published ? json_of(result.best.probability) : Json();
   if (result.others) {
     json["probability_of_nothing_shared"] = result.others->nothing_shared;
     json["probability_of_twin"] = result.others->look_alike;

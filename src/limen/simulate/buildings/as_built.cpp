@@ -12,6 +12,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/geometry/linear.h"
+#include "limen/geometry/polygon_clip.h"
 
 namespace limen {
 namespace {
@@ -155,20 +156,15 @@ Plane AsBuilt::level_plane(std::size_t index, bool high, double share) const {
   const bool outside = index == plan_.rooms.size();
   const Ring ring = ring_of(plan_, index);
   Vector2d middle = Vector2d::Zero();
-  Vector2d low = ring[0];
-  Vector2d top = ring[0];
-  for (const Vector2d& p : ring) {
-    middle += p / static_cast<double>(ring.size());
-    low = low.cwiseMin(p);
-    top = top.cwiseMax(p);
-  }
+  for (const Vector2d& p : ring) middle += p / static_cast<double>(ring.size());
+  const Box2 box = box_of(ring);
   const double z = levels_of(plan_, index)[high ? 1 : 0];
   const Vector3d up = high && !outside ? Vector3d(-Vector3d::UnitZ()) : Vector3d(Vector3d::UnitZ());
   const Plane drawn{up, up.z() * z};
   // A building is in the ground: no gap is below its walls.
   if (outside && !high) return drawn;
   RandomStream random(seed_, 2000000 + 2 * index + (high ? 1U : 0U));
-  const double held = quality_ * share * std::min(1.0, kHeldFrom / (top - low).maxCoeff());
+  const double held = quality_ * share * std::min(1.0, kHeldFrom / (box.high - box.low).maxCoeff());
   PlaneDeviation by;
   by.offset_m = quality_ * share * off(kLevelOffset, random);
   by.lean_rad = held * off(kSlope, random);

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "limen/geometry/polygon_clip.h"
 #include "limen/geometry/random_vectors.h"
 #include "limen/simulate/buildings/building.h"
 
@@ -249,12 +250,7 @@ class FurnitureDecorator {
   }
 
   void try_free(const FurniturePiece& piece, const Surface& like, bool turned) {
-    Vector2d low = room_.outline[0];
-    Vector2d high = low;
-    for (const Vector2d& p : room_.outline) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
+    const auto [low, high] = box_of(room_.outline);
     for (int attempt = 0; attempt < 25; ++attempt) {
       const Vector2d at = uniform_vector(low, high, random_);
       const Wall wall = random_wall();

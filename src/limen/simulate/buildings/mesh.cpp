@@ -10,6 +10,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/geometry/polygon.h"
+#include "limen/geometry/polygon_clip.h"
 
 namespace limen {
 namespace {
@@ -220,12 +221,7 @@ int Mesh::add_quad_panel(const std::array<Vector3d, 4>& corners, const Plane& pl
       std::reverse(ring.begin(), ring.end());
       std::reverse(points.begin(), points.end());
     }
-    Vector2d low = ring[0];
-    Vector2d high = ring[0];
-    for (const Vector2d& p : ring) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
+    auto [low, high] = box_of(ring);
     const Vector2d rim = Vector2d(kRim, kRim).cwiseQuotient(panel.size());
     low = (low - rim).cwiseMax(0.0);
     high = (high + rim).cwiseMin(1.0);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "limen/base/error.h"
+#include "limen/geometry/polygon_clip.h"
 
 namespace limen {
 namespace {
@@ -199,13 +200,7 @@ class LayoutDecorator {
   }
 
   bool put_free(PlacedPiece& placed, const Vector3d& size) {
-    const Ring& ring = room_.outline();
-    Vector2d low = ring[0];
-    Vector2d high = low;
-    for (const Vector2d& p : ring) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
+    const auto [low, high] = box_of(room_.outline());
     const double x = random_.uniform(low.x(), high.x());
     const double y = random_.uniform(low.y(), high.y());
     double turn = 0.0;

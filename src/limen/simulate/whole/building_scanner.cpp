@@ -11,6 +11,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/random.h"
+#include "limen/geometry/polygon_clip.h"
 #include "limen/simulate/buildings/building.h"
 #include "limen/simulate/scanner/station_scan.h"
 
@@ -89,12 +90,7 @@ std::optional<double> meets(const Vector3d& origin, const Vector3d& direction, c
 std::vector<Person> people_in(const Building& building, std::size_t room, const Vector3d& scanner, int count,
                               RandomStream& random) {
   const Room& r = building.plan.rooms[room];
-  Vector2d low = r.outline[0];
-  Vector2d high = low;
-  for (const Vector2d& p : r.outline) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
+  const auto [low, high] = box_of(r.outline);
   std::vector<Person> people;
   for (int attempt = 0; attempt < 60 && static_cast<int>(people.size()) < count; ++attempt) {
     Person person;

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "limen/geometry/polygon_clip.h"
 #include "limen/geometry/random_vectors.h"
 #include "limen/simulate/buildings/building.h"
 #include "limen/simulate/scanner/ray_caster.h"
@@ -65,12 +66,7 @@ class RoomTargets {
  private:
   Vector3d place(double height_m, RandomStream& random) const {
     const Room& room = building_.plan.rooms[room_];
-    Vector2d low = room.outline[0];
-    Vector2d high = low;
-    for (const Vector2d& p : room.outline) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
+    const auto [low, high] = box_of(room.outline);
     const Vector2d p = uniform_vector(low, high, random);
     return {p.x(), p.y(), room.floor_m + height_m};
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "limen/geometry/polygon_clip.h"
 #include "limen/geometry/random_vectors.h"
 #include "limen/simulate/buildings/building.h"
 
@@ -53,12 +54,7 @@ class RoomSurvey {
   }
 
   Vector3d random_place() {
-    Vector2d low = room_.outline[0];
-    Vector2d high = low;
-    for (const Vector2d& p : room_.outline) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
+    const auto [low, high] = box_of(room_.outline);
     Vector2d share = uniform_vector(Vector2d(0.0, 0.0), Vector2d(1.0, 1.0), random_);
     const Eigen::Index longer = high.x() - low.x() >= high.y() - low.y() ? 0 : 1;
     share[longer] = wish_.from + (wish_.to - wish_.from) * share[longer];

@@ -8,6 +8,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
+#include "limen/geometry/polygon_clip.h"
 #include "limen/simulate/furnishing/furnish_rooms.h"
 #include "limen/simulate/recipe_parts.h"
 #include "limen/simulate/street.h"
@@ -24,12 +25,7 @@ struct Design {
 };
 
 Vector2d sides_of(const Room& room) {
-  Vector2d low = room.outline[0];
-  Vector2d high = low;
-  for (const Vector2d& p : room.outline) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
+  const auto [low, high] = box_of(room.outline);
   return high - low;
 }
 
@@ -236,12 +232,7 @@ std::vector<ProjectRoom> rooms_of(const FloorPlan& plan) {
 }
 
 void add_wide_ground(World& world, const Ring& envelope) {
-  Vector2d low = envelope[0];
-  Vector2d high = low;
-  for (const Vector2d& p : envelope) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
+  auto [low, high] = box_of(envelope);
   low -= Vector2d(150.0, 150.0);
   high += Vector2d(150.0, 150.0);
   world.mesh.add_polygon({{low.x(), low.y(), 0.0},
