@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include "limen/base/parallel.h"
+#include "limen/match/planes/direction_clusters.h"
+#include "limen/match/planes/polygon_distance.h"
 #include "limen/match/solvers/rotation_from_directions.h"
 #include "limen/match/solvers/translation_from_planes.h"
 #include "limen/register/published/published_pose.h"
@@ -174,13 +176,13 @@ Vector3d shift_of(const Triple& triple, const Axes& axes, const Pairings& of) {
 }
 
 /// rdist under one shift: (10) within each pair of clusters.
-double agreement_at(const Vector3d& shift, const Axes& axes, const AgreementOptions& options) {
+double agreement_at(const Vector3d& shift, const Axes& axes) {
   double total = 0.0;
   for (const OffsetAxis& axis : axes) {
     Polygons moved;
     for (const PlanarPolygon& polygon : axis.source)
       moved.push_back(transformed({Matrix3d::Identity(), shift}, polygon));
-    total += scan_agreement(moved, axis.target, options);
+    total += scan_agreement(moved, axis.target);
   }
   return total;
 }
@@ -191,8 +193,7 @@ struct Best {
 };
 
 /// "keep the translation calculated by the best hypothesis".
-Best best_of(const std::vector<Triple>& ordered, const Axes& axes, const Pairings& of,
-             const AgreementOptions& options) {
+Best best_of(const std::vector<Triple>& ordered, const Axes& axes, const Pairings& of) {
   constexpr std::size_t kRound = 64;
   Best best;
   std::vector<Best> round(kRound);
@@ -202,7 +203,7 @@ Best best_of(const std::vector<Triple>& ordered, const Axes& axes, const Pairing
     parallel_for(count, 4, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         round[k].shift = shift_of(ordered[first + k], axes, of);
-        round[k].agreement_m2 = agreement_at(round[k].shift, axes, options);
+        round[k].agreement_m2 = agreement_at(round[k].shift, axes);
       }
     });
     for (std::size_t k = 0; k < count; ++k) {
@@ -214,13 +215,14 @@ Best best_of(const std::vector<Triple>& ordered, const Axes& axes, const Pairing
 
 }  // namespace
 
-PublishedAnswer register_cluster_2021(const PublishedInput& input, const Cluster2021Options& options) {
+PublishedAnswer register_cluster_2021(const PublishedInput& input) {
+  constexpr double kSameOffsetM = 0.05;  // planes of one direction nearer than this are one
   // 3.1: the polygons that both scans may have seen.
-  const Polygons source = common_polygons(input.source, input.source_outside, options.max_polygons);
-  const Polygons target = common_polygons(input.target, input.target_outside, options.max_polygons);
+  const Polygons source = common_polygons(input.source, input.source_outside);
+  const Polygons target = common_polygons(input.target, input.target_outside);
   // Algorithm 1: direction clustering.
-  const DirectionClusters of_source = cluster_directions(source, Vector3d::UnitZ(), options.clusters);
-  const DirectionClusters of_target = cluster_directions(target, Vector3d::UnitZ(), options.clusters);
+  const DirectionClusters of_source = cluster_directions(source, Vector3d::UnitZ());
+  const DirectionClusters of_target = cluster_directions(target, Vector3d::UnitZ());
   const MainClusters from = main_clusters(of_source, "source");
   MainClusters to = main_clusters(of_target, "target");
   if (!from.found()) return {std::nullopt, from.why_none};
@@ -237,13 +239,13 @@ PublishedAnswer register_cluster_2021(const PublishedInput& input, const Cluster
     axis.direction = to.of[m]->direction;
     axis.source = members(source, *from.of[m], rotation);
     axis.target = members(target, *to.of[m], Matrix3d::Identity());
-    axis.source_ones = by_offset(axis.source, axis.direction, options.same_offset_m);
-    axis.target_ones = by_offset(axis.target, axis.direction, options.same_offset_m);
-    of[m] = pairings(axis, options.agreement.max_distance_m);
+    axis.source_ones = by_offset(axis.source, axis.direction, kSameOffsetM);
+    axis.target_ones = by_offset(axis.target, axis.direction, kSameOffsetM);
+    of[m] = pairings(axis, AgreementOptions{}.max_distance_m);
   }
   const std::vector<Triple> ordered = triples(of);
   // Selection of the best hypothesis: equations 9 and 10.
-  const Best best = best_of(ordered, axes, of, options.agreement);
+  const Best best = best_of(ordered, axes, of);
   if (!(best.agreement_m2 > 0.0)) return {std::nullopt, "no candidate pose brings two polygons together"};
   PublishedPose pose;
   pose.target_from_source = {rotation, best.shift};

@@ -5,6 +5,8 @@
 #include <Eigen/LU>
 
 #include "limen/base/angles.h"
+#include "limen/match/planes/direction_clusters.h"
+#include "limen/match/segments/segment_distance.h"
 #include "limen/register/published/published_pose.h"
 
 // Monasse, Djahel, Vallet 2023, section III-B: a façade of each scan is drawn, a corner of an opening of
@@ -104,7 +106,8 @@ std::optional<DrawnHybrid> draw(const Choice& choice, RandomStream& random) {
 
 }  // namespace
 
-PublishedAnswer register_hybrid_2023(const PublishedInput& input, const Hybrid2023Options& options) {
+PublishedAnswer register_hybrid_2023(const PublishedInput& input) {
+  constexpr std::size_t kTrials = 40000;
   if (!input.upright) return {std::nullopt, "the method needs the vertical of both scans"};
   // III-A: façades with openings, and planes.
   Choice choice;
@@ -113,18 +116,18 @@ PublishedAnswer register_hybrid_2023(const PublishedInput& input, const Hybrid20
   if (choice.source.empty() || choice.target.empty())
     return {std::nullopt, "a scan without openings has nothing that the method could match"};
   // III-B.1: direction clusters of the indoor planes.
-  choice.planes = common_polygons(input.source, input.source_outside, options.max_polygons);
-  choice.clusters = cluster_directions(choice.planes, Vector3d::UnitZ(), options.clusters);
+  choice.planes = common_polygons(input.source, input.source_outside);
+  choice.clusters = cluster_directions(choice.planes, Vector3d::UnitZ());
   // II: the distance between the two sets of segments, (1) to (8).
   const std::vector<Segment> source_edges = all_edges(choice.source);
   const std::vector<Segment> target_edges = all_edges(choice.target);
-  const SegmentSetMeasure measure(target_edges, options.distance);
+  const SegmentSetMeasure measure(target_edges, {.weight = SegmentWeight::relative});
   const auto cost = [&](const DrawnHybrid& pose) {
     return measure.to(source_edges, pose.target_from_source).distance;
   };
   // III-B.2: random trials.
   const auto drawing = [&](RandomStream& random) { return draw(choice, random); };
-  const std::optional<BestTrial> best = best_trial(options.trials, input.seed, drawing, cost);
+  const std::optional<BestTrial> best = best_trial(kTrials, input.seed, drawing, cost);
   if (!best) return {std::nullopt, "no two planes of the source stand across a wall with openings"};
   RandomStream again(input.seed, best->trial);
   const DrawnHybrid chosen = *draw(choice, again);

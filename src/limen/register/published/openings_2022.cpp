@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
+#include "limen/match/segments/segment_distance.h"
 #include "limen/match/solvers/rigid_from_lines.h"
 #include "limen/register/published/published_pose.h"
 
@@ -45,7 +46,8 @@ DrawnOpening draw(const std::vector<WallEdges>& source, const std::vector<WallEd
 
 }  // namespace
 
-PublishedAnswer register_openings_2022(const PublishedInput& input, const Openings2022Options& options) {
+PublishedAnswer register_openings_2022(const PublishedInput& input) {
+  constexpr std::size_t kTrials = 40000;
   // 2: the openings of both scans, four segments each.
   const std::vector<WallEdges> source = wall_edges(input.source, input.upright);
   const std::vector<WallEdges> target = wall_edges(input.target, input.upright);
@@ -53,7 +55,7 @@ PublishedAnswer register_openings_2022(const PublishedInput& input, const Openin
     return {std::nullopt, "a scan without openings has nothing that the method could match"};
   // 3.1: the distance between the two sets of segments, (3) to (14).
   const std::vector<Segment> edges = all_edges(source);
-  const SegmentSetMeasure measure(all_edges(target), options.distance);
+  const SegmentSetMeasure measure(all_edges(target), {.whole_segments = true});
   const auto cost = [&](const DrawnOpening& pose) {
     return measure.to(edges, pose.target_from_source).distance;
   };
@@ -61,7 +63,7 @@ PublishedAnswer register_openings_2022(const PublishedInput& input, const Openin
   const auto drawing = [&](RandomStream& random) {
     return std::optional<DrawnOpening>(draw(source, target, random));
   };
-  const std::optional<BestTrial> best = best_trial(options.trials, input.seed, drawing, cost);
+  const std::optional<BestTrial> best = best_trial(kTrials, input.seed, drawing, cost);
   if (!best) return {std::nullopt, "no trial gave a pose"};
   RandomStream again(input.seed, best->trial);
   const DrawnOpening chosen = draw(source, target, again);

@@ -37,13 +37,14 @@ std::vector<Segment> all_edges(const std::vector<WallEdges>& walls) {
   return all;
 }
 
-std::vector<PlanarPolygon> common_polygons(const Features& features, bool outside, std::size_t most) {
+std::vector<PlanarPolygon> common_polygons(const Features& features, bool outside) {
+  constexpr std::size_t kMostPolygons = 24;
   std::vector<PlanarPolygon> common;
   std::copy_if(features.planes.begin(), features.planes.end(), std::back_inserter(common),
                [outside](const PlanarPolygon& polygon) { return polygon.interior == outside; });
   std::stable_sort(common.begin(), common.end(),
                    [](const PlanarPolygon& a, const PlanarPolygon& b) { return a.inliers > b.inliers; });
-  if (common.size() > most) common.resize(most);
+  if (common.size() > kMostPolygons) common.resize(kMostPolygons);
   return common;
 }
 

@@ -11,14 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "limen/base/angles.h"
 #include "limen/base/parallel.h"
 #include "limen/base/random.h"
 #include "limen/match/openings/opening_walls.h"
-#include "limen/match/planes/direction_clusters.h"
-#include "limen/match/planes/polygon_distance.h"
-#include "limen/match/planes/threshold_matching.h"
-#include "limen/match/segments/segment_distance.h"
 #include "limen/model/features.h"
 
 namespace limen {
@@ -92,8 +87,8 @@ struct PublishedInput {
 
 /// The polygons of one scan that take part in 2021, section 3: of one that looks in from outside only those
 /// of the points behind its façades (3.1.2), else all but those that it sees outside. Most inliers first, at
-/// most `most`.
-std::vector<PlanarPolygon> common_polygons(const Features& features, bool outside, std::size_t most);
+/// most 24; the paper has 22 and 23.
+std::vector<PlanarPolygon> common_polygons(const Features& features, bool outside);
 
 /// The one pose that a method ends with, and the number it was chosen by.
 struct PublishedPose {
@@ -110,57 +105,24 @@ struct PublishedAnswer {
   std::string why_none;
 };
 
-struct Threshold2021Options {
-  ThresholdMatchingOptions matching = {.one_to_one = true};
-  std::size_t max_polygons = 24;  ///< of each scan, those of most inliers; the paper has 22 and 23
-};
-
 /// The pose that lays the matched polygons on each other. The criterion is equation 10 summed over both
 /// scans (rdist, symmetrised), m^2, higher is better; nothing is chosen by it.
-PublishedAnswer register_threshold_2021(const PublishedInput& input,
-                                        const Threshold2021Options& options = {});
-
-struct Cluster2021Options {
-  DirectionClusterOptions clusters;
-  AgreementOptions agreement;     ///< d_thr of (9) and (10)
-  double same_offset_m = 0.05;    ///< planes of one direction nearer than this are one
-  std::size_t max_polygons = 24;  ///< of each scan, those of most inliers; the paper has 22 and 23
-};
+PublishedAnswer register_threshold_2021(const PublishedInput& input);
 
 /// The best hypothesis. The criterion is (10) over the polygons of associated clusters, summed over both
 /// scans (rdist, symmetrised), m^2, higher is better.
-PublishedAnswer register_cluster_2021(const PublishedInput& input, const Cluster2021Options& options = {});
-
-struct Openings2022Options {
-  SegmentDistanceOptions distance = {.whole_segments = true};
-  std::size_t trials = 40000;
-};
+PublishedAnswer register_cluster_2021(const PublishedInput& input);
 
 /// The pose of smallest distance. The criterion is equation 14 over all edges of both scans, m^3, lower is
 /// better. Deterministic for a seed.
-PublishedAnswer register_openings_2022(const PublishedInput& input, const Openings2022Options& options = {});
-
-struct Hybrid2023Options {
-  DirectionClusterOptions clusters;
-  SegmentDistanceOptions distance = {.weight = SegmentWeight::relative};
-  std::size_t max_polygons = 24;  ///< of the source, those of most inliers
-  std::size_t trials = 40000;
-};
+PublishedAnswer register_openings_2022(const PublishedInput& input);
 
 /// The pose of smallest distance. The criterion is equation 8, summed over both scans, m^2, lower is better.
 /// Deterministic for a seed.
-PublishedAnswer register_hybrid_2023(const PublishedInput& input, const Hybrid2023Options& options = {});
-
-struct Segments2023Options {
-  DirectionClusterOptions clusters;
-  SegmentDistanceOptions distance = {.weight = SegmentWeight::relative};
-  double max_angle_rad = radians(5.0);  ///< by which the angle within a double pair may differ
-  std::size_t max_segments = 300;       ///< of each set, the longest
-  std::size_t trials = 200000;          ///< double pairs drawn
-};
+PublishedAnswer register_hybrid_2023(const PublishedInput& input);
 
 /// The pose of smallest distance. The criterion is equation 8, summed over both sets, m^2, lower is better.
 /// Deterministic for a seed.
-PublishedAnswer register_segments_2023(const PublishedInput& input, const Segments2023Options& options = {});
+PublishedAnswer register_segments_2023(const PublishedInput& input);
 
 }  // namespace limen

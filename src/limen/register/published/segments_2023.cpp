@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limen/base/angles.h"
+#include "limen/match/planes/direction_clusters.h"
+#include "limen/match/segments/segment_distance.h"
 #include "limen/match/solvers/rigid_from_lines.h"
 #include "limen/register/published/published_pose.h"
 
@@ -88,8 +91,8 @@ Line line_of(const Segment& segment) {
 }
 
 /// One iteration of IV-C: two associations, a segment of each in both sets, the pose of IV-D.
-std::optional<Rigid3> draw(const std::vector<Association>& of, const Segments2023Options& options,
-                           RandomStream& random) {
+std::optional<Rigid3> draw(const std::vector<Association>& of, RandomStream& random) {
+  constexpr double kMaxAngleRad = radians(5.0);  // by which the angle within a double pair may differ
   const auto count = static_cast<std::uint32_t>(of.size());
   const std::uint32_t first = random.below(count);
   const std::uint32_t second = (first + 1 + random.below(count - 1)) % count;
@@ -102,10 +105,10 @@ std::optional<Rigid3> draw(const std::vector<Association>& of, const Segments202
   };
   const double turn = angle(source_v, source_h);
   const double target_turn = angle(target_v, target_h);
-  if (std::min(turn, target_turn) < options.max_angle_rad) return std::nullopt;  // no pair fixes a pose
-  if (std::abs(turn - target_turn) > options.max_angle_rad) return std::nullopt;
+  if (std::min(turn, target_turn) < kMaxAngleRad) return std::nullopt;  // no pair fixes a pose
+  if (std::abs(turn - target_turn) > kMaxAngleRad) return std::nullopt;
   if (std::abs(line_distance(source_v, source_h) - line_distance(target_v, target_h)) >
-      options.distance.max_distance_m)
+      SegmentDistanceOptions{}.max_distance_m)
     return std::nullopt;
   LinePair vertical;
   vertical.source = line_of(source_v);
@@ -118,25 +121,27 @@ std::optional<Rigid3> draw(const std::vector<Association>& of, const Segments202
 
 }  // namespace
 
-PublishedAnswer register_segments_2023(const PublishedInput& input, const Segments2023Options& options) {
+PublishedAnswer register_segments_2023(const PublishedInput& input) {
+  constexpr std::size_t kMaxSegments = 300;  // of each set, the longest
+  constexpr std::size_t kTrials = 200000;    // double pairs drawn
   // IV-A: the segments of both sets.
-  const Segments source = longest(input.source.segments, options.max_segments);
-  const Segments target = longest(input.target.segments, options.max_segments);
+  const Segments source = longest(input.source.segments, kMaxSegments);
+  const Segments target = longest(input.target.segments, kMaxSegments);
   // IV-B: direction clusters (algorithm 1) and their association (9).
-  const DirectionClusters from = cluster_directions(source, std::nullopt, options.clusters);
-  const DirectionClusters to = cluster_directions(target, std::nullopt, options.clusters);
+  const DirectionClusters from = cluster_directions(source, std::nullopt);
+  const DirectionClusters to = cluster_directions(target, std::nullopt);
   const std::vector<Association> of = associations(source, from, target, to, input.start.rotation);
   if (of.size() < 2) return {std::nullopt, "the segments have fewer than two directions in common"};
   // II: the distance between the two sets, (1) to (8).
-  const SegmentSetMeasure measure(target, options.distance);
+  const SegmentSetMeasure measure(target, {.weight = SegmentWeight::relative});
   const auto cost = [&](const Rigid3& pose) { return measure.to(source, pose).distance; };
   // IV-C: random double pairs.
-  const auto drawing = [&](RandomStream& random) { return draw(of, options, random); };
-  const std::optional<BestTrial> best = best_trial(options.trials, input.seed, drawing, cost);
+  const auto drawing = [&](RandomStream& random) { return draw(of, random); };
+  const std::optional<BestTrial> best = best_trial(kTrials, input.seed, drawing, cost);
   if (!best) return {std::nullopt, "no two pairs of segments have the same relative position in both sets"};
   RandomStream again(input.seed, best->trial);
   PublishedPose pose;
-  pose.target_from_source = *draw(of, options, again);
+  pose.target_from_source = *draw(of, again);
   pose.criterion = best->cost;
   pose.hypotheses = best->judged;
   return {pose, {}};

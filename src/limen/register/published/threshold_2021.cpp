@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "limen/match/planes/polygon_distance.h"
+#include "limen/match/planes/threshold_matching.h"
 #include "limen/match/solvers/rotation_from_directions.h"
 #include "limen/match/solvers/translation_from_planes.h"
 #include "limen/register/published/published_pose.h"
@@ -44,15 +45,13 @@ std::vector<PlanePair> plane_pairs(const std::vector<ThresholdMatch>& matches,
 
 }  // namespace
 
-PublishedAnswer register_threshold_2021(const PublishedInput& input, const Threshold2021Options& options) {
+PublishedAnswer register_threshold_2021(const PublishedInput& input) {
   // 3.1: the polygons that both scans may have seen.
-  const std::vector<PlanarPolygon> source =
-      common_polygons(input.source, input.source_outside, options.max_polygons);
-  const std::vector<PlanarPolygon> target =
-      common_polygons(input.target, input.target_outside, options.max_polygons);
+  const std::vector<PlanarPolygon> source = common_polygons(input.source, input.source_outside);
+  const std::vector<PlanarPolygon> target = common_polygons(input.target, input.target_outside);
   // 3.2.1: angle, distance (7) and overlap (8) within their thresholds.
   const std::vector<ThresholdMatch> matches =
-      match_by_thresholds(source, target, input.start, options.matching);
+      match_by_thresholds(source, target, input.start, {.one_to_one = true});
   if (matches.size() < 3) {
     return {std::nullopt, fmt::format("{} pairs of polygons agree within the thresholds at the start, three "
                                       "are needed",
