@@ -12,7 +12,6 @@ struct PoseCandidate {
   /// By what its proposer puts it before others of the same list, higher first. No measure: poses of
   /// different proposers are not compared by it, they are scored.
   double precedence = 0.0;
-  int free_translations = 0;  ///< shifts that no pair of features fixed (0 to 3)
 };
 
 }  // namespace limen

@@ -247,7 +247,7 @@ std::vector<FoundPose> attempt(const WorkedPair& pair, bool gravity_known, Propo
     wide.last_gate_m = wide.first_gate_m;
     wide.first_gate_m = std::max(wide.last_gate_m, std::min(start->prior.sigma_m, kWidestGateM));
     const Rigid3 led = refine_pose(source.view(), target.view(), given, wide).target_from_source;
-    for (const Rigid3& pose : {given, led}) candidates.push_back({pose, 0.0, 0});
+    for (const Rigid3& pose : {given, led}) candidates.push_back({pose, 0.0});
   }
   clock.end();
   clock.begin("refinement");

@@ -30,12 +30,11 @@ Vector3d up_of(const Features& features, bool gravity_known) {
 }
 
 /// The pose moved along its wall's normal until the wall has this thickness.
-HybridPose at_thickness(const OpeningPose& opening, double thickness_m, bool assumed = false) {
+HybridPose at_thickness(const OpeningPose& opening, double thickness_m) {
   HybridPose pose;
   pose.target_from_source = opening.target_from_source;
   pose.target_from_source.translation -= (thickness_m - opening.thickness_m) * opening.wall_normal;
   pose.thickness_m = thickness_m;
-  pose.free_translations = assumed ? 1 : 0;
   pose.opening = opening;
   return pose;
 }
@@ -96,7 +95,7 @@ class HybridEnumerator {
     }
     if (poses.empty()) {
       for (const double thickness : options_.openings.thicknesses_m) {
-        add(at_thickness(opening, thickness, true));
+        add(at_thickness(opening, thickness));
       }
     }
     for (HybridPose& pose : poses)
@@ -225,16 +224,9 @@ std::vector<HybridPose> enumerate_hybrid_poses(const Features& source, const Fea
                                                const HybridPoseOptions& options) {
   options.check();
   const HybridPoseOptions all = with_users_thickness(options);
-  return enumerate_hybrid_poses(source, target, enumerate_opening_poses(source, target, all.openings), all);
-}
-
-std::vector<HybridPose> enumerate_hybrid_poses(const Features& source, const Features& target,
-                                               const std::vector<OpeningPose>& opening_poses,
-                                               const HybridPoseOptions& options) {
-  options.check();
-  const HybridPoseOptions all = with_users_thickness(options);
   const HybridEnumerator enumerator(source, target, all);
-  const std::vector<OpeningPose> openings = apart_within_the_wall(opening_poses);
+  const std::vector<OpeningPose> openings =
+      apart_within_the_wall(enumerate_opening_poses(source, target, all.openings));
   std::vector<std::vector<HybridPose>> found(openings.size());
   parallel_for(openings.size(), kDrawsPerPiece, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) found[i] = enumerator.poses_of(openings[i]);

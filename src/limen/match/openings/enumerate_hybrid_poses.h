@@ -38,22 +38,17 @@ struct HybridPoseOptions {
 /// A pose proposed by openings and planes, in the scans' local frames.
 struct HybridPose {
   Rigid3 target_from_source;
-  double support_m2 = 0.0;    ///< overlap of planes that agree along the normal, bounding rectangles
-  int free_translations = 0;  ///< 1 where nothing held the shift along the wall's normal
-  double thickness_m = 0.0;   ///< of the wall at this pose
-  OpeningPose opening;        ///< the pose it came from
+  double support_m2 = 0.0;   ///< overlap of planes that agree along the normal, bounding rectangles
+  double thickness_m = 0.0;  ///< of the wall at this pose
+  OpeningPose opening;       ///< the pose it came from
 };
 
 /// Poses from openings and planes. A pose is in the list by the better of its two places, by the distance
 /// of its openings and by the overlap of its planes, counted for each of the two cases of sides apart; equal
 /// places go by distance. Where the user gave a thickness, that shift comes first of its opening pose's. A
-/// pose whose normal nothing holds is listed with assumed thicknesses and `free_translations` 1.
-/// Deterministic. Throws Error for bad options.
+/// pose whose normal nothing holds is listed with assumed thicknesses. Deterministic. Throws Error for bad
+/// options.
 std::vector<HybridPose> enumerate_hybrid_poses(const Features& source, const Features& target,
-                                               const HybridPoseOptions& options = {});
-/// The same from opening poses at hand.
-std::vector<HybridPose> enumerate_hybrid_poses(const Features& source, const Features& target,
-                                               const std::vector<OpeningPose>& opening_poses,
                                                const HybridPoseOptions& options = {});
 
 }  // namespace limen

@@ -90,20 +90,18 @@ TEST(EnumerateHybridPoses, PlanesSeenThroughTheWindowsHoldTheNormal) {
   const auto poses = enumerate_hybrid_poses(house.inside, house.outside);
   ASSERT_FALSE(poses.empty());
   const HybridPose& best = poses.front();
-  EXPECT_EQ(best.free_translations, 0);
   EXPECT_NEAR(best.thickness_m, house.thickness_m, 0.001);
   EXPECT_LT(house.error(best.target_from_source), 0.02);
   EXPECT_NEAR(best.support_m2, 2.5 * 2.8, 0.5);
   EXPECT_EQ(best.opening.matched_openings, 3);
 }
 
-TEST(EnumerateHybridPoses, WithoutSuchPlanesTheNormalIsSaidToBeFree) {
+TEST(EnumerateHybridPoses, WithoutSuchPlanesThicknessesAreAssumed) {
   const House house;
   const auto poses = enumerate_hybrid_poses(house.inside, house.outside);
   ASSERT_FALSE(poses.empty());
   for (const HybridPose& pose : poses) {
     if (pose.opening.sides == WallSides::same) continue;
-    EXPECT_EQ(pose.free_translations, 1);
     // Never thickness zero, to which the printed method pulls.
     EXPECT_GE(pose.thickness_m, 0.05);
   }
@@ -115,9 +113,7 @@ TEST(EnumerateHybridPoses, TheUsersThicknessComesFirst) {
   options.wall_thickness_m = house.thickness_m;
   const auto poses = enumerate_hybrid_poses(house.inside, house.outside, options);
   ASSERT_FALSE(poses.empty());
-  EXPECT_EQ(poses.front().free_translations, 0);
   EXPECT_LT(house.error(poses.front().target_from_source), 0.02);
-  for (const HybridPose& pose : poses) EXPECT_EQ(pose.free_translations, 0);
   options.wall_thickness_m = 1.8;  // beyond the usual range: the user knows
   EXPECT_NEAR(enumerate_hybrid_poses(house.inside, house.outside, options).front().thickness_m, 1.8, 1e-9);
   options.wall_thickness_m = -1.0;
@@ -135,7 +131,7 @@ TEST(EnumerateHybridPoses, RevealsThatReachThroughHoldTheNormal) {
   EXPECT_LT(house.error(poses.front().target_from_source), 0.02);
 }
 
-TEST(EnumerateHybridPoses, TheSameFaceHasNothingFree) {
+TEST(EnumerateHybridPoses, OfTheSameFaceTheWholeWallOverlaps) {
   const Wall front{Vector3d::Zero(), Vector3d::UnitX(), 14.0, 9.0, synthetic::irregular()};
   Features one;
   Features other;
@@ -144,7 +140,6 @@ TEST(EnumerateHybridPoses, TheSameFaceHasNothingFree) {
   const auto poses = enumerate_hybrid_poses(one, other);
   ASSERT_FALSE(poses.empty());
   EXPECT_EQ(poses.front().opening.sides, WallSides::same);
-  EXPECT_EQ(poses.front().free_translations, 0);
   EXPECT_NEAR(poses.front().support_m2, 14.0 * 9.0, 1.0);
 }
 

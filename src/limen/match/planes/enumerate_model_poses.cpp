@@ -527,7 +527,7 @@ std::vector<PoseCandidate> enumerate_model_poses(const Features& scan, const Fea
                    [](const Found& a, const Found& b) { return a.weight > b.weight; });
   std::vector<PoseCandidate> poses;
   poses.reserve(all.size());
-  for (const Found& it : all) poses.push_back({{rotations[it.rotation], it.translation}, it.weight, 0});
+  for (const Found& it : all) poses.push_back({{rotations[it.rotation], it.translation}, it.weight});
   return poses;
 }
 

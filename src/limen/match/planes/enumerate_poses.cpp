@@ -122,8 +122,7 @@ class PoseEnumerator {
       for (std::size_t l = 0; l < std::min(kSlidingShifts, b.shifts.size()); ++l) {
         for (double c = range.first; c <= range.second; c += step_m) {
           poses.push_back({{rotation, solve * Vector3d(a.shifts[k].value, b.shifts[l].value, c)},
-                           a.shifts[k].limit_m2 + b.shifts[l].limit_m2,
-                           1});
+                           a.shifts[k].limit_m2 + b.shifts[l].limit_m2});
         }
       }
     }
@@ -227,13 +226,12 @@ class PoseEnumerator {
                                                     const LeastPrecedence& of_all) const {
     std::vector<AxisPairs> axes = axes_under(rotation);
     std::vector<std::size_t> basis = basis_of(axes);
-    const int open = 3 - static_cast<int>(basis.size());
-    if (open > 1) return {};
-    if (open == 1) {
+    if (basis.size() < 2) return {};
+    if (basis.size() == 2) {
       axes.push_back(free_axis(axes, basis, rotation));
       basis.push_back(axes.size() - 1);
     }
-    return poses_of_triples(rotation, axes, basis, open, of_all);
+    return poses_of_triples(rotation, axes, basis, of_all);
   }
 
   /// What the axes outside the basis, of `axes`, can bring together.
@@ -343,7 +341,7 @@ class PoseEnumerator {
   [[nodiscard]] std::vector<PoseCandidate> poses_of_triples(const Matrix3d& rotation,
                                                             const std::vector<AxisPairs>& axes,
                                                             const std::vector<std::size_t>& basis_axes,
-                                                            int open, const LeastPrecedence& of_all) const {
+                                                            const LeastPrecedence& of_all) const {
     const Basis basis = make_basis(axes, basis_axes);
     const ShiftTriples triples(axes, {basis_axes[0], basis_axes[1], basis_axes[2]}, basis.others.most_m2,
                                options_.offset_tolerance_m, of_all.value());
@@ -351,7 +349,7 @@ class PoseEnumerator {
         std::min<std::size_t>(kMostOfRotation, 2 * static_cast<std::size_t>(options_.max_poses));
     std::vector<PoseCandidate> poses;
     for (const RatedShifts& rated : best_triples(basis, triples, most, of_all))
-      poses.push_back({{rotation, basis.translation(rated.at)}, rated.precedence, open});
+      poses.push_back({{rotation, basis.translation(rated.at)}, rated.precedence});
     return distinct(poses);
   }
 

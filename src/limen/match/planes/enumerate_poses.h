@@ -34,7 +34,7 @@ std::vector<PoseCandidate> enumerate_poses(const Features& source, const Feature
 
 /// Poses for scans whose common planes fix only two shifts: for every rotation and pair of axes the best
 /// shifts, swept along the third direction in steps of `step_m` as far as the planes can meet.
-/// `free_translations` is 1 and `precedence` the limit of the two shifts: those of the highest are returned.
+/// `precedence` is the limit of the two shifts: those of the highest are returned.
 std::vector<PoseCandidate> enumerate_sliding_poses(const Features& source, const Features& target,
                                                    double step_m, const PoseEnumerationOptions& options = {});
 

@@ -138,18 +138,15 @@ class SegmentEnumerator {
     voting.direction_deg = options_.direction_deg;
     voting.cell_m = options_.cell_m;
     voting.max_peaks = static_cast<std::size_t>(options_.max_peaks);
-    std::vector<VotedShift> shifts = vote_shifts(source_, target_, rotation, target_axes_, voting);
+    const std::vector<Vector3d> shifts = vote_shifts(source_, target_, rotation, target_axes_, voting);
     std::vector<SegmentSample> turned = pieces_;
     for (SegmentSample& piece : turned) {
       piece.at = rotation * piece.at;
       piece.direction = rotation * piece.direction;
     }
     std::vector<PoseCandidate> poses;
-    for (const VotedShift& shift : shifts) {
-      poses.push_back({{rotation, shift.translation},
-                       support(turned, shift.translation, kCoarseStride),
-                       shift.free_translations});
-    }
+    for (const Vector3d& shift : shifts)
+      poses.push_back({{rotation, shift}, support(turned, shift, kCoarseStride)});
     sort_best_first(poses);
     poses.resize(std::min(poses.size(), std::max(kLeastSecondLook, poses.size() / kSecondLook)));
     for (PoseCandidate& pose : poses) fit(turned, pose);

@@ -43,9 +43,8 @@ struct SegmentPoseOptions {
 
 /// Poses that lay segments of the source on segments of the target, for any starting pose. Best first, no two
 /// alike; every place where the smaller set repeats in the larger one is among them. `precedence` of a pose
-/// is in metres here: covered length of the smaller set, weighted as in (8). `free_translations` is 1 where
-/// all segments in common have one direction: the shift along it is made up then. Deterministic, and
-/// independent of threads.
+/// is in metres here: covered length of the smaller set, weighted as in (8). Where all segments in common
+/// have one direction the shift along it is made up. Deterministic, and independent of threads.
 std::vector<PoseCandidate> enumerate_segment_poses(const std::vector<Segment>& source,
                                                    const std::vector<Segment>& target,
                                                    const SegmentPoseOptions& options = {});

@@ -64,7 +64,7 @@ class Voting {
          const VoteOptions& options)
       : source_(source), target_(target), rotation_(rotation), options_(options) {}
 
-  [[nodiscard]] std::vector<VotedShift> run(const std::vector<AxisDirection>& directions) {
+  [[nodiscard]] std::vector<Vector3d> run(const std::vector<AxisDirection>& directions) {
     choose_basis(directions);
     if (families_.empty()) return {};
     place();
@@ -237,33 +237,33 @@ class Voting {
   }
 
   /// Most votes first, no two in neighbouring cells.
-  [[nodiscard]] std::vector<VotedShift> best_of(std::vector<Cell>& found) const {
+  [[nodiscard]] std::vector<Vector3d> best_of(std::vector<Cell>& found) const {
     std::stable_sort(found.begin(), found.end(),
                      [](const Cell& a, const Cell& b) { return a.votes > b.votes; });
     const auto key = [](std::size_t x, std::size_t y, std::size_t z) { return (x << 42U) | (y << 21U) | z; };
     std::unordered_set<std::size_t> taken;
-    std::vector<VotedShift> shifts;
+    std::vector<Vector3d> shifts;
     for (const Cell& cell : found) {
       if (shifts.size() == options_.max_shifts) break;
       if (taken.count(key(cell.at[0], cell.at[1], cell.at[2])) > 0) continue;
       for (std::size_t n = 0; n < 27; ++n) {
         taken.insert(key(cell.at[0] + n % 3 - 1, cell.at[1] + n / 3 % 3 - 1, cell.at[2] + n / 9 - 1));
       }
-      shifts.push_back({shift_at(cell), 0});
+      shifts.push_back(shift_at(cell));
     }
     return shifts;
   }
 
   /// All segments in common are parallel: along them the middles of the sets are laid on one another.
-  [[nodiscard]] std::vector<VotedShift> one_direction() {
+  [[nodiscard]] std::vector<Vector3d> one_direction() {
     vote(0);
-    std::vector<VotedShift> shifts;
+    std::vector<Vector3d> shifts;
     for (const Peak& peak : peaks(0)) {
       Vector3d shift = low_shift_;
       shift[0] = middle_shift_[0];
       shift[1] += cell_m_ * static_cast<double>(peak.u);
       shift[2] += cell_m_ * static_cast<double>(peak.v);
-      shifts.push_back({basis_ * shift, 1});
+      shifts.push_back(basis_ * shift);
       if (shifts.size() == options_.max_shifts) break;
     }
     return shifts;
@@ -307,9 +307,9 @@ double VotingSegments::total_length_m() const {
   return std::accumulate(lengths_m.begin(), lengths_m.end(), 0.0);
 }
 
-std::vector<VotedShift> vote_shifts(const VotingSegments& source, const VotingSegments& target,
-                                    const Matrix3d& rotation, const std::vector<AxisDirection>& directions,
-                                    const VoteOptions& options) {
+std::vector<Vector3d> vote_shifts(const VotingSegments& source, const VotingSegments& target,
+                                  const Matrix3d& rotation, const std::vector<AxisDirection>& directions,
+                                  const VoteOptions& options) {
   return Voting(source, target, rotation, options).run(directions);
 }
 

@@ -31,16 +31,11 @@ struct VoteOptions {
   std::size_t max_shifts = 600;  ///< returned
 };
 
-/// A shift that pairs of parallel segments vote for.
-struct VotedShift {
-  Vector3d translation = Vector3d::Zero();  ///< of target_from_source
-  int free_translations = 0;                ///< components that no pair fixes
-};
-
-/// The shifts under one rotation (2023, IV-C, see enumerate_segment_poses.h), most votes first.
-/// `directions`: of the target. Empty where no direction is common.
-std::vector<VotedShift> vote_shifts(const VotingSegments& source, const VotingSegments& target,
-                                    const Matrix3d& rotation, const std::vector<AxisDirection>& directions,
-                                    const VoteOptions& options);
+/// The shifts (of target_from_source) that pairs of parallel segments vote for under one rotation (2023,
+/// IV-C, see enumerate_segment_poses.h), most votes first. `directions`: of the target. Empty where no
+/// direction is common.
+std::vector<Vector3d> vote_shifts(const VotingSegments& source, const VotingSegments& target,
+                                  const Matrix3d& rotation, const std::vector<AxisDirection>& directions,
+                                  const VoteOptions& options);
 
 }  // namespace limen

@@ -140,11 +140,11 @@ std::vector<PoseCandidate> opening_candidates(const Features& source, const Feat
   std::vector<PoseCandidate> all;
   if (options.method == Method::openings) {
     for (const OpeningPose& pose : enumerate_opening_poses(source, target, hybrid.openings))
-      all.push_back({pose.target_from_source, pose.support_m, pose.thickness_held ? 0 : 1});
+      all.push_back({pose.target_from_source, pose.support_m});
     return all;
   }
   for (const HybridPose& pose : enumerate_hybrid_poses(source, target, hybrid))
-    all.push_back({pose.target_from_source, pose.support_m2, pose.free_translations});
+    all.push_back({pose.target_from_source, pose.support_m2});
   return all;
 }
 
