@@ -195,7 +195,7 @@ Hit cross(const Scan& scan, std::size_t point, const OutlineTarget& target,
   if (!(beyond_m >= options.min_beyond_m)) return hit;
   const Vector2d at = target.frame.to_plane(centre + share * (x - centre));
   if (!target.outline.contains(at)) return hit;
-  hit.crossing = {static_cast<std::uint32_t>(point), target.index, at, beyond_m, behind};
+  hit.crossing = {static_cast<std::uint32_t>(point), target.index, at, behind};
   hit.share = share;
   return hit;
 }

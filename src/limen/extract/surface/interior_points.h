@@ -67,7 +67,6 @@ struct Crossing {
   std::uint32_t point = 0;         ///< index into the scan
   std::int32_t wall = -1;          ///< index into the polygons
   Vector2d at = Vector2d::Zero();  ///< plane coordinates of that polygon's frame
-  double beyond_m = 0.0;           ///< along the ray from the crossing to the point
   double depth_m = 0.0;            ///< of the point behind the plane
 };
 

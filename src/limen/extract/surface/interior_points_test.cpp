@@ -56,7 +56,6 @@ TEST(InteriorPoints, AreSeenThroughTheHolesOfTheFacade) {
   EXPECT_EQ(found[0].point, 0U);
   EXPECT_EQ(found[0].wall, 1);
   EXPECT_NEAR((found[0].at - Vector2d(2.5, 4.0)).norm(), 0.0, 1e-12);
-  EXPECT_NEAR(found[0].beyond_m, 5.0, 1e-12);
   EXPECT_NEAR(found[0].depth_m, 5.0, 1e-12);
 }
 

@@ -72,7 +72,8 @@ std::vector<double> votes_for_turns(const std::vector<Pair>& source, const std::
 
 std::vector<Matrix3d> parallel_rotations(const VotingSegments& source, const VotingSegments& target,
                                          const AxisDirection& source_axis, const AxisDirection& target_axis,
-                                         const RotationOptions& options, std::size_t max_rotations) {
+                                         const RotationOptions& options) {
+  constexpr std::size_t kMostTurns = 24;
   struct Turn {
     double votes;
     Matrix3d rotation;
@@ -96,7 +97,7 @@ std::vector<Matrix3d> parallel_rotations(const VotingSegments& source, const Vot
   }
   std::stable_sort(turns.begin(), turns.end(),
                    [](const Turn& a, const Turn& b) { return a.votes > b.votes; });
-  if (turns.size() > max_rotations) turns.resize(max_rotations);
+  if (turns.size() > kMostTurns) turns.resize(kMostTurns);
   std::vector<Matrix3d> rotations;
   for (const Turn& turn : turns) rotations.push_back(turn.rotation);
   return rotations;

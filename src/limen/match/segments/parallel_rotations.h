@@ -11,9 +11,9 @@ namespace limen {
 /// Rotations for sets that have but one direction in common, where no second direction fixes the turn about
 /// it: the turns under which most pairs of parallel source lines lie to each other as pairs of target lines
 /// do. Both senses of the direction where `gravity_known` is false; with it the direction is the vertical.
-/// Most pairs first, at most `max_rotations`; deterministic.
+/// Most pairs first, at most 24; deterministic.
 std::vector<Matrix3d> parallel_rotations(const VotingSegments& source, const VotingSegments& target,
                                          const AxisDirection& source_axis, const AxisDirection& target_axis,
-                                         const RotationOptions& options, std::size_t max_rotations = 24);
+                                         const RotationOptions& options);
 
 }  // namespace limen

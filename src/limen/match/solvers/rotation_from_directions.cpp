@@ -42,7 +42,8 @@ Matrix3d rotation_from_main_directions(const MainDirections& source, const MainD
   return frame_of(u2, v2) * frame_of(u1, v1).transpose();  // (16) to (19)
 }
 
-RotationFit rotation_from_directions(const std::vector<DirectionPair>& pairs, double min_spread_rad) {
+RotationFit rotation_from_directions(const std::vector<DirectionPair>& pairs) {
+  constexpr double kMinSpreadRad = 0.05;
   Matrix3d correlation = Matrix3d::Zero();
   Matrix3d scatter = Matrix3d::Zero();
   double weight = 0.0;
@@ -61,7 +62,7 @@ RotationFit rotation_from_directions(const std::vector<DirectionPair>& pairs, do
   fit.rotation = svd.left * diagonal.asDiagonal() * svd.right.transpose();
   // Two target directions at an angle s leave about s^2 / 4 in the second eigenvalue of their scatter.
   const Spectrum3 spread = spectrum_of(Matrix3d(scatter / weight));
-  if (spread.values[1] < 0.25 * min_spread_rad * min_spread_rad) {
+  if (spread.values[1] < 0.25 * kMinSpreadRad * kMinSpreadRad) {
     fit.free_axis = spread.vectors.col(2);
   }
   return fit;

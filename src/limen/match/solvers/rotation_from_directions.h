@@ -34,12 +34,12 @@ struct DirectionPair {
 
 struct RotationFit {
   Matrix3d rotation = Matrix3d::Identity();  ///< target_from_source, determinant +1
-  /// Set where all directions are parallel (within `min_spread_rad`): the turn about it is not held.
+  /// Set where all directions are parallel (within 0.05 rad): the turn about it is not held.
   std::optional<Vector3d> free_axis;
 };
 
 /// Least squares over all pairs: the rotation that minimises the sum of w |R s - t|^2 (Wahba 1965, solved by
 /// singular value decomposition after Markley 1988). Throws Error without any pair of positive weight.
-RotationFit rotation_from_directions(const std::vector<DirectionPair>& pairs, double min_spread_rad = 0.05);
+RotationFit rotation_from_directions(const std::vector<DirectionPair>& pairs);
 
 }  // namespace limen
