@@ -257,7 +257,7 @@ class Run {
       scan.points = record.points[k];
       result_.scans.push_back(std::move(scan));
       nodes_.push_back(std::move(node));
-      prints_.push_back(record.prints[k]);
+      prints_.push_back(k < record.prints.size() ? record.prints[k] : PointPrint{});
     }
     settle_group(first);
   }

@@ -262,6 +262,8 @@ std::vector<RegistrationReport> talkative_reports(Outcome outcome) {
     it.result.best.agreeing_length_m = 12.5;
     it.result.reason = "4 segments, 12.5 m, coincide in one plane, and no other pose fits nearly as well";
   });
+  add([](RegistrationReport& it) { it.result.moved = {{0, 0, 0.06, 0.0, 2.0}}; });
+  add([](RegistrationReport& it) { it.result.moved = {{0, 0, 0.06, 0.0, 2.0}, {1, 1, -0.02, 0.0, 1.0}}; });
   add([](RegistrationReport& it) {
     it.result.published = PublishedScore{};
     it.result.published->method = "2022";
