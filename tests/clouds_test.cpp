@@ -89,6 +89,27 @@ TEST_F(CloudsTest, ThinToE57KeepsEachScanAndItsScanner) {
   }
 }
 
+TEST_F(CloudsTest, WhatHasNoTimesHasNoneAfterwards) {
+  write_whole(work() / "corner.xyz", "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 0\n");
+  for (const std::string ending : {"las", "laz", "e57", "ply"}) {
+    ASSERT_EQ(run({"thin", "corner.xyz", "out." + ending, "--points", "9"}).status, 0);
+    const std::string text = info("out." + ending).dump();
+    EXPECT_EQ(text.find("\"time\""), std::string::npos) << text;
+    EXPECT_EQ(text.find("GPS times"), std::string::npos) << text;
+  }
+}
+
+TEST_F(CloudsTest, OneScanOfAPtxIsNotWrittenAsPtx) {
+  write_whole(work() / "pose.txt", kShifted);
+  const std::string scan =
+      "2\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n1 2 3 0.5\n2 2 3 0.5\n";
+  write_whole(work() / "two.ptx", scan + scan);
+  const ProgramRun part = run({"transform", "pose.txt", "two.ptx #1", "one.ptx"});
+  EXPECT_EQ(part.status, 2);
+  EXPECT_NE(part.err.find("move the whole file alone"), std::string::npos) << part.err;
+  EXPECT_EQ(run({"transform", "pose.txt", "two.ptx", "both.ptx"}).status, 0);
+}
+
 TEST_F(CloudsTest, ThinSaysThatTheMemoryAllowsFewerThanAsked) {
   write_floor("floor.csv", 300);
   const ProgramRun small = run({"thin", "floor.csv", "out.ply", "--points", "80000", "--memory", "1M"});

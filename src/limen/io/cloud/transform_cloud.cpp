@@ -87,8 +87,12 @@ TransformedCloud move_and_tell(const OpenPoints& input, const Rigid3& pose,
 void require_known_ending(const std::filesystem::path& output, const OpenPoints& input) {
   if (is_cloud_ending(output)) return;
   const std::string ending = lower_case(output.extension().string());
-  throw Error(fmt::format("{} cannot be written as \"{}\"", input.file().format(), ending), output.string(),
-              "name the output .ply, .las, .laz, .e57, .xyz or .csv, or give it the ending of the input");
+  const bool own = has_ending_of(input.format(), output);
+  throw Error(fmt::format("{}{} cannot be written as \"{}\"", own ? "a part of a " : "",
+                          input.file().format(), ending),
+              output.string(),
+              fmt::format("name the output .ply, .las, .laz, .e57, .xyz or .csv, or {}",
+                          own ? "move the whole file alone" : "give it the ending of the input"));
 }
 
 /// All clouds of a file; those that are copied need no scanner position, and empty ones are only copied.

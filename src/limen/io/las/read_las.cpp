@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -29,17 +30,25 @@ class LasStream : public PointStream {
   std::size_t stride_;
 };
 
-/// Points that the beginning of the file marks as withheld: one sentence is all a user needs.
-bool begins_with_withheld(const LasHeader& header, LasRecords& records) {
-  constexpr std::size_t kLooked = 4096;
-  const unsigned mask = las_is_long_format(header.point_format) ? 0x04U : 0x80U;
-  const LasPiece piece = records.next(kLooked);
-  for (std::size_t i = 0; i < std::min(piece.count, kLooked); ++i) {
-    const auto flags = static_cast<unsigned char>(piece.data[i * header.point_bytes + 15]);
-    if ((flags & mask) != 0) return true;
+/// What the first points show: one sentence is all a user needs.
+struct LasBeginning {
+  bool withheld = false;  ///< some are marked so
+  bool timed = false;     ///< some have a time: formats 6 to 10 have room for one in any case
+
+  LasBeginning(const LasHeader& header, LasRecords& records) {
+    constexpr std::size_t kLooked = 4096;
+    const unsigned mask = las_is_long_format(header.point_format) ? 0x04U : 0x80U;
+    const std::size_t time_at = las_gps_time_at(header.point_format);
+    const LasPiece piece = records.next(kLooked);
+    for (std::size_t i = 0; i < std::min(piece.count, kLooked); ++i) {
+      const auto* const point = piece.data + i * header.point_bytes;
+      withheld = withheld || (static_cast<unsigned char>(point[15]) & mask) != 0;
+      double time_s = 0.0;
+      if (time_at != 0) std::memcpy(&time_s, point + time_at, sizeof time_s);
+      timed = timed || time_s != 0.0;
+    }
   }
-  return false;
-}
+};
 
 const char* stated_time(const LasHeader& header) {
   return (header.global_encoding & 1U) != 0
@@ -66,10 +75,10 @@ class LasFile : public PointFile {
     for (const LasField& value : layout_.fields) facts.fields.push_back(value.field.name);
     facts.notes = header_.notes;
     facts.notes.insert(facts.notes.end(), layout_.notes.begin(), layout_.notes.end());
-    if (las_gps_time_at(header_.point_format) != 0) facts.notes.emplace_back(stated_time(header_));
     // A damaged beginning is an error here, before anybody makes room for the points.
-    if (begins_with_withheld(header_, *open_las_records(bytes_, name_, header_)))
-      facts.notes.emplace_back("points that the file marks as withheld are kept");
+    const LasBeginning beginning(header_, *open_las_records(bytes_, name_, header_));
+    if (beginning.timed) facts.notes.emplace_back(stated_time(header_));
+    if (beginning.withheld) facts.notes.emplace_back("points that the file marks as withheld are kept");
     clouds_.push_back(std::move(facts));
   }
 

@@ -466,6 +466,10 @@ ScanFile ScanBuilder::finish(ScanFile file) {
                 "another with --units");
   }
   parts.scan.colours = parts.colours.finish();
+  // Formats that always have a column of times fill it with 0 where there are none.
+  std::vector<double>& times_s = parts.scan.times_s;
+  if (std::all_of(times_s.begin(), times_s.end(), [](double time_s) { return time_s == 0.0; }))
+    times_s.clear();
   parts.scan.topology = parts.topology();
   std::size_t unusable = count_bad(parts.scan, is_point);
   Scan scan = only(std::move(parts.scan), is_point, unusable);
