@@ -119,6 +119,14 @@ void read_table(const std::filesystem::path& path, const std::string& key, const
       throw Error("two columns are called " + name, where(table.columns), remedy);
   }
   if (columns.count(key) == 0) throw Error("no column is called " + key, where(table.columns), remedy);
+  std::string given;
+  for (const char* const deviation : {"sigma", "sigma_x", "cov_xx"}) {
+    if (columns.count(deviation) == 0) continue;
+    if (!given.empty())
+      throw Error(fmt::format("there are columns {} and {}, which state the same", given, deviation),
+                  where(table.columns), "take one of them out");
+    given = deviation;
+  }
   for (const TableRow& row : table.rows) visit(Row(columns, row.cells, table.mark, where(row), remedy));
 }
 

@@ -139,6 +139,8 @@ TEST(StatedPositions, SayWhatIsWrongWithThem) {
       {"file,x,y,z,sigma\na,1,2,3,0\n", "is not above 0"},
       {"file,x,y\na,1,2\n", "there is no column z"},
       {"file,x,y,z,x\na,1,2,3,4\n", "two columns are called x"},
+      {"file,x,y,z,sigma,sigma_x,sigma_y,sigma_z\na,1,2,3,1,1,1,1\n",
+       "columns sigma and sigma_x, which state the same"},
       {"file,x,y,z\n", "no row follows"}};
   for (const auto& [text, words] : faults) {
     try {
