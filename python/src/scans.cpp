@@ -6,7 +6,6 @@
 #include "numpy_views.h"
 #include "work.h"
 
-#include "limen/base/guarded_mapping.h"
 #include "limen/base/length_unit.h"
 #include "limen/bim/read_bim.h"
 #include "limen/io/cloud/open_points.h"
@@ -214,8 +213,8 @@ std::optional<double> unit_from(const std::string& name) {
   throw Error(name + " is no unit of length", "units", "give m, mm, cm, ft, us-ft, in or km");
 }
 
-py::dict thin_file(const std::filesystem::path& input, const std::filesystem::path& output,
-                   std::uint64_t points, double spacing_m, const py::object& progress) {
+py::dict thinned_file(const std::filesystem::path& input, const std::filesystem::path& output,
+                       std::uint64_t points, double spacing_m, const py::object& progress) {
   ThinOptions thinning;
   thinning.most_points = points;
   thinning.spacing_m = spacing_m;
@@ -223,11 +222,7 @@ py::dict thin_file(const std::filesystem::path& input, const std::filesystem::pa
   const WrittenClouds written = run(progress, [&](Monitor& monitor) {
     monitor.begin_stage("thinning");
     const OpenPoints open(input);
-    const JoinedClouds clouds(placed_clouds(open, {}), open.file().clouds().size() > 1);
-    const bool few = spacing_m == 0.0 && clouds.plan().most_points <= points;
-    return with_whole_inputs([&] {
-      return few ? write_clouds(clouds, output, monitor) : write_thinned(clouds, thinning, output, monitor);
-    });
+    return limen::thin_file(open, thinning, output, monitor);
   });
   py::dict values;
   values["points_read"] = written.read;
@@ -275,7 +270,7 @@ void bind_scans(py::module_& module) {
       py::arg("path"), py::arg("units"), py::arg("progress"));
   module.def("is_model_file", &is_bim_file, py::arg("path"));
   module.def("transform_file", &transform_file);
-  module.def("thin_file", &thin_file);
+  module.def("thin_file", &thinned_file);
   module.def("require_pose", [](const Matrix4d& pose) { from_matrix(pose); });
   module.def(
       "transform_scan",

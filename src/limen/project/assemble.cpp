@@ -57,6 +57,7 @@ class Assembler {
     settle_frame();
     for (std::size_t n = 0; n < nodes_.size(); ++n) tell_scan(n);
     for (std::size_t k = 0; k < graph_.links.size(); ++k) tell_link(k);
+    tell_moved();
     state_look_alikes();
     tell_survey();
     result_.decisions =
@@ -368,8 +369,6 @@ class Assembler {
       stated.pair = pair.outcome;
       stated.reason = pair.reason;
       note_change(link, stated);
-      if (!source.model && !target.model && stated.number == 0 && stated.solved.pose >= 0)
-        note_moved(link, pair.moved);
       // They are those of the pair's own best pose; of another one nothing is known.
       if (stated.number == 0) {
         stated.matches = pair.matches;
@@ -397,20 +396,32 @@ class Assembler {
                     degrees(solved.loop_error_rad)));
   }
 
-  /// So do planes that lie beside their counterparts, a door's leaf aside.
-  void note_moved(const GraphLink& link, const std::vector<PlaneMatch>& moved) {
-    constexpr double kNotedM2 = 1.0;
-    double most_m = 0.0;
-    double area_m2 = 0.0;
-    for (const PlaneMatch& plane : moved) {
-      most_m = std::max(most_m, std::abs(plane.distance_m));
-      area_m2 += plane.overlap_m2;
+  /// So do planes that lie beside their counterparts.
+  void tell_moved() {
+    constexpr std::size_t kNamed = 3;
+    std::string pairs;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+      const GraphLink& link = graph_.links[k];
+      if (pair_of_[k] < 0 || solved_.links[k].pose != link.best || digest(link.source).model ||
+          digest(link.target).model)
+        continue;
+      double most_m = 0.0;
+      double area_m2 = 0.0;
+      for (const PlaneMatch& plane : pairs_[static_cast<std::size_t>(pair_of_[k])].result.moved) {
+        most_m = std::max(most_m, std::abs(plane.distance_m));
+        area_m2 += plane.overlap_m2;
+      }
+      if (area_m2 > 0.0 && ++count <= kNamed)
+        pairs += fmt::format("{}{} and {} ({:.1f} m2, up to {:.0f} mm)", count == 1 ? "" : "; ",
+                             name_of(link.source), name_of(link.target), area_m2, 1e3 * most_m);
     }
-    if (area_m2 < kNotedM2) return;
+    if (count == 0) return;
+    if (count > kNamed) pairs += fmt::format("; and {} more", count - kNamed);
     result_.notes.push_back(
-        fmt::format("planes of {:.1f} m2 lie up to {:.0f} mm beside one another in {} and {}: something was "
-                    "moved or rebuilt between the scans, and their accuracy allows for either side",
-                    area_m2, 1e3 * most_m, name_of(link.source), name_of(link.target)));
+        "something was moved or rebuilt between scans, and their accuracy allows for either side: planes lie "
+        "beside one another in " +
+        pairs);
   }
 
   /// The distances of a pair's planes under the poses of the solution; none of passes that were bent.

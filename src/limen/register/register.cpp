@@ -32,9 +32,7 @@ FoundPose in_own_frames(const FoundPose& upright, const PreparedScan& source, co
   Matrix6d both = Matrix6d::Zero();
   both.topLeftCorner<3, 3>() = back;
   both.bottomRightCorner<3, 3>() = back;
-  pose.information = both * pose.information * both.transpose();
-  pose.formal_information = both * pose.formal_information * both.transpose();
-  pose.geometry_m2 = both * pose.geometry_m2 * both.transpose();
+  for (Matrix6d* held : about_centre(pose)) *held = both * *held * both.transpose();
   return own;
 }
 
@@ -88,7 +86,7 @@ Matrix6d covariance_with_drift(const RefinedPose& pose, const ScanView& source, 
   const double shift_m = drift_m(source, target);
   const double turn_rad =
       shift_m / std::max(kDriftLengthM, common_length_m(pose, source, target) / kTurnOfWandering);
-  Matrix6d covariance = covariance_of(pose) + pose.spread;
+  Matrix6d covariance = covariance_of(pose);
   covariance.diagonal().head<3>().array() += turn_rad * turn_rad;
   covariance.diagonal().tail<3>().array() += shift_m * shift_m;
   return covariance;
@@ -97,7 +95,7 @@ Matrix6d covariance_with_drift(const RefinedPose& pose, const ScanView& source, 
 PoseSigma sigma_of(const RefinedPose& pose, const PreparedPair& pair) {
   PoseSigma sigma;
   sigma.centre = pose.centre + pair.target.extracted.features.local_origin;
-  sigma.covariance = covariance_with_drift(pose, pair.source.view(), pair.target.view());
+  sigma.covariance = covariance_with_drift(pose, pair.source.view(), pair.target.view()) + pose.spread;
   sigma.formal_covariance = formal_covariance_of(pose);
   const Eigen::Matrix<double, 6, 1> deviation = sigma.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   sigma.rotation_rad = deviation.head<3>();

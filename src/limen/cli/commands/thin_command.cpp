@@ -1,15 +1,12 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
-#include "limen/base/guarded_mapping.h"
-#include "limen/base/text.h"
 #include "limen/cli/commands/commands.h"
 #include "limen/cli/inputs/scan_options.h"
 #include "limen/io/cloud/open_points.h"
@@ -50,28 +47,12 @@ int run(ThinCommand command, const Session& session) {
   const OpenPoints input(command.cloud);
   const CancelScope scope(*session.monitor);
   session.monitor->begin_stage("thinning");
-  const std::vector<PlacedCloud> placed = placed_clouds(input, {});
-  const double unit = require_one_unit(placed, command.output);
-  command.thinning.spacing_m /= unit;
-  const JoinedClouds clouds(placed, placed.size() > 1);
-  const bool few = command.thinning.spacing_m == 0.0 && command.thinning.most_points > 0 &&
-                   clouds.plan().most_points <= command.thinning.most_points;
-  const bool stations =
-      placed.size() > 1 && lower_case(std::filesystem::path(command.output).extension().string()) == ".e57";
-  WrittenClouds written = with_whole_inputs([&] {
-    Monitor& monitor = *session.monitor;
-    if (stations)
-      return few ? write_stations(placed, command.output, monitor)
-                 : write_thinned_stations(placed, command.thinning, command.output, monitor);
-    return few ? write_clouds(clouds, command.output, monitor)
-               : write_thinned(clouds, command.thinning, command.output, monitor);
-  });
+  WrittenClouds written = thin_file(input, command.thinning, command.output, *session.monitor);
   const std::uint64_t asked = std::min(command.thinning.most_points, written.read);
   if (command.thinning.memory_bytes > 0 &&
       static_cast<double>(written.written) < kLeastOfAsked * static_cast<double>(asked))
     written.notes.push_back(
         fmt::format("--memory {} allows no more than {} points", command.memory, written.written));
-  written.spacing_m *= unit;
   for (const std::string& note : written.notes) session.note(note);
   std::string text = fmt::format("{} of {} points kept", written.written, written.read);
   if (written.spacing_m > 0.0) text += fmt::format(", spacing about {:.4f} m", written.spacing_m);

@@ -9,6 +9,7 @@
 
 #include "limen/base/random.h"
 #include "limen/geometry/linear.h"
+#include "limen/model/plausible_size.h"
 
 namespace limen {
 namespace {
@@ -16,9 +17,8 @@ namespace {
 /// Marks of a scan, so many that a hundredth of its points has some of them.
 constexpr std::size_t kMarks = 1024;
 constexpr double kMarkM = 1e-4;
-/// Formats round to half a millimetre per axis, or less: three and a half deviations of that rounding's mean,
-/// times the root of the number of points.
-constexpr double kRoundingM = 1e-3;
+/// A step that every format has: single precision, tenths of a millimetre.
+constexpr double kLeastStepM = 2e-5;
 
 std::array<double, 4> spread_of(const Scan& scan) {
   if (scan.points.empty()) return {};
@@ -57,12 +57,14 @@ std::vector<std::uint64_t> marks_of(const Scan& scan) {
 }  // namespace
 
 PointPrint print_of(const Scan& scan) {
-  return {scan.size(), spread_of(scan), marks_of(scan)};
+  return {scan.size(), spread_of(scan), coordinate_step_m(scan), marks_of(scan)};
 }
 
 bool same_points(const PointPrint& a, const PointPrint& b) {
   if (a.points != b.points || a.points == 0) return false;
-  const double most_m = kRoundingM / std::sqrt(static_cast<double>(a.points));
+  // Three and a half deviations of what rounding by a step leaves of the mean.
+  const double most_m =
+      std::max({kLeastStepM, a.step_m, b.step_m}) / std::sqrt(static_cast<double>(a.points));
   return std::equal(a.spread_m.begin(), a.spread_m.end(), b.spread_m.begin(),
                     [most_m](double one, double other) { return std::abs(one - other) <= most_m; });
 }

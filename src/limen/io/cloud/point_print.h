@@ -18,14 +18,14 @@ struct PointPrint {
   /// Their deviations along the principal axes and their mean distance from the middle, metres: the same in
   /// any order and after any motion.
   std::array<double, 4> spread_m{};
+  double step_m = 0.0;  ///< that their coordinates are rounded to; 0: to less than a scanner's noise
   /// The least of the numbers that the places of the points have, ascending: of a part some of the same,
   /// where it was not moved nor rounded to more than some micrometres.
   std::vector<std::uint64_t> marks;
 };
 PointPrint print_of(const Scan& scan);
 
-/// Whether two scans have as many points, and the same but for a motion, in any order, and rounded as formats
-/// round.
+/// Whether two scans have as many points, and the same but for a motion, in any order, and rounded.
 bool same_points(const PointPrint& a, const PointPrint& b);
 
 /// Whether nearly all points of `part` are points of `whole` too.

@@ -36,6 +36,16 @@ TEST(PointPrint, AnotherScanOfTheSameRoomIsNoCopy) {
   EXPECT_FALSE(same_points(print_of(Scan{}), print_of(Scan{})));
 }
 
+TEST(PointPrint, ASecondScanFromTheSameTripodIsNoCopy) {
+  const Scan scan = box_scan(20000, -1.0, 1.0);
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Scan other = scan;
+    RandomStream stream(seed);
+    for (Vector3d& point : other.points) point += 0.0005 * stream.normal() * point.normalized();
+    EXPECT_FALSE(same_points(print_of(scan), print_of(other))) << seed;
+  }
+}
+
 TEST(PointPrint, APartIsKnownByItsMarks) {
   const Scan scan = box_scan(20000, -1.0, 1.0);
   RandomStream stream(8);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/guarded_mapping.h"
 #include "limen/base/length_unit.h"
 #include "limen/base/text.h"
 #include "limen/io/cloud/read_cloud.h"
@@ -235,8 +236,6 @@ std::vector<std::string> notes_of_thinning(std::vector<std::string> notes, std::
   return notes;
 }
 
-}  // namespace
-
 WrittenClouds write_thinned(const JoinedClouds& clouds, const ThinOptions& thinning,
                             const std::filesystem::path& output, Monitor& monitor) {
   monitor.set_unit(WorkUnit::points);
@@ -269,8 +268,10 @@ WrittenClouds write_thinned_stations(const std::vector<PlacedCloud>& stations, c
     CloudPlan plan = cloud.plan();
     const ThinnedCloud kept = thinned(cloud, share, result.read, total, monitor);
     plan.most_points = kept.table.rows;
-    writer.begin_station(plan);
-    writer.write(kept.table);
+    if (kept.table.rows > 0) {
+      writer.begin_station(plan);
+      writer.write(kept.table);
+    }
     result.written += kept.table.rows;
     result.spacing_m = std::max(result.spacing_m, kept.spacing_m);
     unusable += kept.unusable;
@@ -279,9 +280,33 @@ WrittenClouds write_thinned_stations(const std::vector<PlacedCloud>& stations, c
         result.notes.push_back(note);
     }
   }
+  if (result.written == 0)
+    throw Error("no points are left to write", stations.front().input->name(),
+                "check how the file was exported");
   writer.finish();
   result.notes = notes_of_thinning(std::move(result.notes), unusable);
   return result;
+}
+
+}  // namespace
+
+WrittenClouds thin_file(const OpenPoints& input, ThinOptions thinning, const std::filesystem::path& output,
+                        Monitor& monitor) {
+  thinning.check();
+  const std::vector<PlacedCloud> placed = placed_clouds(input, {});
+  const double unit = require_one_unit(placed, output);
+  thinning.spacing_m /= unit;
+  const JoinedClouds clouds(placed, placed.size() > 1);
+  const bool few = thinning.spacing_m == 0.0 && thinning.most_points > 0 &&
+                   clouds.plan().most_points <= thinning.most_points;
+  WrittenClouds written = with_whole_inputs([&] {
+    if (placed.size() > 1 && ending_of(output) == ".e57")
+      return few ? write_stations(placed, output, monitor)
+                 : write_thinned_stations(placed, thinning, output, monitor);
+    return few ? write_clouds(clouds, output, monitor) : write_thinned(clouds, thinning, output, monitor);
+  });
+  written.spacing_m *= unit;
+  return written;
 }
 
 }  // namespace limen

@@ -59,12 +59,8 @@ bool is_copied(const OpenPoints& input, const std::filesystem::path& output);
 WrittenClouds write_stations(const std::vector<PlacedCloud>& stations, const std::filesystem::path& output,
                              Monitor& monitor = silent_monitor(), const std::string& system = {});
 
-/// As write_clouds, thinned on the way.
-WrittenClouds write_thinned(const JoinedClouds& clouds, const ThinOptions& thinning,
-                            const std::filesystem::path& output, Monitor& monitor = silent_monitor());
-/// As write_stations, each thinned by itself; of `most_points` each keeps its share.
-WrittenClouds write_thinned_stations(const std::vector<PlacedCloud>& stations, const ThinOptions& thinning,
-                                     const std::filesystem::path& output,
-                                     Monitor& monitor = silent_monitor());
+/// A file thinned to another one; in an .e57 each of its scans stays one, with its share of the points.
+WrittenClouds thin_file(const OpenPoints& input, ThinOptions thinning, const std::filesystem::path& output,
+                        Monitor& monitor = silent_monitor());
 
 }  // namespace limen

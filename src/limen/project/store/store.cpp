@@ -17,7 +17,7 @@
 namespace limen {
 
 void transfer(auto& bytes, Is<PointPrint> auto& print) {
-  bytes(print.points, print.spread_m, print.marks);
+  bytes(print.points, print.spread_m, print.step_m, print.marks);
 }
 
 void transfer(auto& bytes, Is<FileRecord> auto& record) {

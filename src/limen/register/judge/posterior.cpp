@@ -289,6 +289,18 @@ std::string placed_words(double probability, double risk) {
                      100.0 * std::floor(scale * probability + 1e-9) / scale, digits, 100.0 * (1.0 - risk));
 }
 
+std::string why_open(OpenFreedoms::Cause cause) {
+  switch (cause) {
+    case OpenFreedoms::Cause::drift:
+      return "the trajectory drifts, so the scans do not fix the ";
+    case OpenFreedoms::Cause::moved:
+      return "planes were moved between the scans, so these do not fix the ";
+    case OpenFreedoms::Cause::surface:
+      break;
+  }
+  return "the common surface does not fix the ";
+}
+
 }  // namespace
 
 std::string reason_of(Outcome outcome, const Posterior& posterior, const PoseScore& best,
@@ -302,9 +314,7 @@ std::string reason_of(Outcome outcome, const Posterior& posterior, const PoseSco
     case Outcome::probable:
       return placed_words(posterior.best(), options.risk) + ": " + what_else(posterior, look_alike);
     case Outcome::under_constrained:
-      return (open.by_drift ? "the trajectory drifts, so the scans do not fix the "
-                            : "the common surface does not fix the ") +
-             open.list.front().name;
+      return why_open(open.cause) + open.list.front().name;
     case Outcome::ambiguous:
       return what_else(posterior, look_alike);
     case Outcome::no_match:

@@ -294,8 +294,10 @@ TEST(ReasonOf, WhatIsOpenIsNamed) {
   const Posterior sure = odds(1.0, 0.0, 0.0, 0.0);
   EXPECT_EQ(reason_of(Outcome::under_constrained, sure, {}, {kOpen}, {}),
             "the common surface does not fix the shift along (1.00, 0.00, 0.00)");
-  EXPECT_NE(reason_of(Outcome::under_constrained, sure, {}, {kOpen, true}, {}).find("drifts"),
-            std::string::npos);
+  using Cause = OpenFreedoms::Cause;
+  for (const auto& [cause, word] : {std::pair(Cause::drift, "drifts"), std::pair(Cause::moved, "were moved")})
+    EXPECT_NE(reason_of(Outcome::under_constrained, sure, {}, {kOpen, cause}, {}).find(word),
+              std::string::npos);
 }
 
 TEST(Posterior, ThroughWindowsContradictionSpeaksForALookAlikeRoom) {

@@ -136,8 +136,14 @@ OpenFreedoms open_freedoms(const RefinedPose& pose, const Matrix6d& with_drift,
   if (open.list.empty())
     open.list = loose_freedoms(covariance_of(pose), options.max_sigma_m, options.max_sigma_deg);
   if (!open.list.empty()) return open;
-  open.list = loose_freedoms(with_drift, options.max_drifting_m, options.max_drifting_deg);
-  open.by_drift = !open.list.empty();
+  for (const OpenFreedoms::Cause cause : {OpenFreedoms::Cause::drift, OpenFreedoms::Cause::moved}) {
+    const Matrix6d covariance =
+        cause == OpenFreedoms::Cause::moved ? Matrix6d(with_drift + pose.spread) : with_drift;
+    open.list = loose_freedoms(covariance, options.max_drifting_m, options.max_drifting_deg);
+    if (open.list.empty()) continue;
+    open.cause = cause;
+    return open;
+  }
   return open;
 }
 

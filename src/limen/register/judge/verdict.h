@@ -14,12 +14,13 @@ namespace limen {
 /// What a pose leaves open.
 struct OpenFreedoms {
   std::vector<UnobservedFreedom> list;
-  bool by_drift = false;  ///< the data hold it, but a trajectory may be off by too much
+  /// Why, where the matched surface would hold it.
+  enum class Cause { surface, drift, moved } cause = Cause::surface;
 };
 
 /// Freedoms that the matched surface does not hold, else those that it holds loosely, else those that are
 /// loose once what a trajectory may be off by is counted: in `with_drift`, the pose's covariance (turns, then
-/// shifts; rad, m).
+/// shifts; rad, m); else those that are loose because planes were moved between the scans.
 OpenFreedoms open_freedoms(const RefinedPose& pose, const Matrix6d& with_drift,
                            const VerdictOptions& options = {});
 

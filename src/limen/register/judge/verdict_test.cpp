@@ -59,13 +59,13 @@ TEST(OpenFreedoms, ATrajectoryThatDriftsFarLeavesAShiftOpen) {
   EXPECT_TRUE(open_freedoms(found_at(30, 0).refined, covariance).list.empty());
   covariance(3, 3) = 0.06 * 0.06;
   const OpenFreedoms open = open_freedoms(found_at(30, 0).refined, covariance);
-  EXPECT_TRUE(open.by_drift);
+  EXPECT_EQ(open.cause, OpenFreedoms::Cause::drift);
   ASSERT_EQ(open.list.size(), 1U);
   EXPECT_NE(open.list[0].name.find("60 mm"), std::string::npos);
   // What the surface itself leaves open comes first.
   FoundPose slides = found_at(30, 0);
   slides.refined.geometry_m2(4, 4) = 0.0;
-  EXPECT_FALSE(open_freedoms(slides.refined, covariance).by_drift);
+  EXPECT_EQ(open_freedoms(slides.refined, covariance).cause, OpenFreedoms::Cause::surface);
 }
 
 TEST(OpenFreedoms, APoseFurtherOnAlongAnOpenShiftIsTheSamePlace) {

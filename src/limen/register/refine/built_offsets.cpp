@@ -44,8 +44,8 @@ struct Mode {
 
 class Settling {
  public:
-  Settling(const std::vector<PlaneSums>& planes, double slope, double factor)
-      : planes_(planes), slope_(slope), factor_(factor) {
+  Settling(const std::vector<PlaneSums>& planes, double slope, double factor, const Matrix6d& stay)
+      : planes_(planes), slope_(slope), factor_(factor), stay_(stay) {
     for (const PlaneSums& plane : planes)
       moved_.push_back(
           {Integrated(plane, {kMovedM, slope}, factor), Integrated(plane, {kMovedM, kOtherSlope}, factor)});
@@ -93,8 +93,8 @@ class Settling {
   /// One step of expectation and maximisation; returns what builders err, as these planes show it.
   double improve(double err_m, Mode& mode) const {
     const Vector6d x = mode.step;
-    mode.information.setZero();
-    mode.log_likelihood = 0.0;
+    mode.information = stay_;
+    mode.log_likelihood = -0.5 * x.dot(stay_ * x);
     Vector6d right = Vector6d::Zero();
     double squares = kBuildersStrength * kBuilderErrsM * kBuilderErrsM;
     double count = kBuildersStrength;
@@ -124,6 +124,7 @@ class Settling {
   const std::vector<PlaneSums>& planes_;
   double slope_;
   double factor_;
+  Matrix6d stay_;
   std::vector<std::array<Integrated, 2>> moved_;  ///< of each plane: moved, another surface
 };
 
@@ -152,8 +153,9 @@ Matrix6d information_of(const PlaneSums& plane, const PlaneErrors& errors, doubl
          plane.shared * Integrated(plane, errors, factor).gain * plane.shared.transpose();
 }
 
-SettledPose settle_among_moved(const std::vector<PlaneSums>& planes, double slope, double factor) {
-  const Settling settling(planes, slope, factor);
+SettledPose settle_among_moved(const std::vector<PlaneSums>& planes, double slope, double factor,
+                               const Matrix6d& stay) {
+  const Settling settling(planes, slope, factor, stay);
   std::vector<Mode> modes{settling.from(Vector6d::Zero())};
   for (const std::size_t k : moved_planes(planes, modes.front())) {
     // As if this plane, of all that are off, were right: shifted along its normal.

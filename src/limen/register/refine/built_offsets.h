@@ -57,7 +57,7 @@ struct SettledPose {
   /// With what other such poses say, weighted by how likely they are.
   Matrix6d information = Matrix6d::Zero();
   std::vector<double> moved;  ///< of each plane, the probability that it was moved
-  /// Mean square by which such poses differ from the one that was given.
+  /// Mean square by which such poses differ from the one next to the pose that was given.
   Matrix6d spread = Matrix6d::Zero();
 };
 
@@ -65,6 +65,8 @@ struct SettledPose {
 /// millimetres that builders err (learned from these planes), or was moved by centimetres, or is another
 /// surface that lies near it. Which ones were moved is not known: poses that take other planes for the moved
 /// ones are sought too, and how likely they are and how far off is in the information.
-SettledPose settle_among_moved(const std::vector<PlaneSums>& planes, double slope, double factor);
+/// `stay`: information that something else gives of the pose, which speaks for no step.
+SettledPose settle_among_moved(const std::vector<PlaneSums>& planes, double slope, double factor,
+                               const Matrix6d& stay = Matrix6d::Zero());
 
 }  // namespace limen

@@ -22,7 +22,7 @@ double plane_sigma_m(const PlanarPolygon& plane) {
 
 std::vector<MeasuredThickness> measure_thickness(const RefinedPose& pose, const Features& source,
                                                  const Features& target) {
-  const Matrix6d covariance = covariance_of(pose);
+  const Matrix6d covariance = covariance_of(pose) + pose.spread;
   struct Sum {
     double gap = 0.0;
     double weight = 0.0;

@@ -24,7 +24,7 @@ constexpr double kMaxCentreM = 20.0;    // the best known point is sought this f
 constexpr int kLeastTilted = 8;         // tiles of a pair whose slopes are looked at
 constexpr double kMovedGateM = 0.06;    // as far as walls are looked for that were moved
 constexpr double kBesideGateM = 0.15;   // the same in two scans: two walls may both be lined
-constexpr double kBesideM2 = 0.5;       // less may be furniture that stands elsewhere
+constexpr double kBesideM2 = 1.0;       // less may be furniture that stands elsewhere
 constexpr double kBesideRad = 0.02;     // a plane that was moved keeps its direction
 constexpr double kBesideShare = 0.3;    // of it: so much that is met where it is was not moved
 constexpr double kOpeningErrsM = 0.02;  // how far windows and doors are from where a model has them: 1 sigma
@@ -41,6 +41,24 @@ struct NormalEquations {
     normal += weight * row * row.transpose();
     right += weight * residual * row;
   }
+};
+
+/// How well planes hold a pose, direction by direction. Turns are measured by what they move at the typical
+/// lever, so that they compare with shifts.
+struct HeldFreedoms {
+  Vector6d unit;
+  Spectrum6 spectrum;
+  double trace = 0.0;
+
+  explicit HeldFreedoms(const Matrix6d& information) {
+    const double lever = std::sqrt(information.topLeftCorner<3, 3>().trace() /
+                                   std::max(1e-12, information.bottomRightCorner<3, 3>().trace()));
+    unit << Vector3d::Constant(1.0 / std::max(0.1, lever)), Vector3d::Ones();
+    const Matrix6d scaled = unit.asDiagonal() * information * unit.asDiagonal();
+    spectrum = spectrum_of(scaled);
+    trace = scaled.trace();
+  }
+  [[nodiscard]] bool is_weak(Eigen::Index k) const { return spectrum.values[k] < kWeakShare * trace; }
 };
 
 class Refiner {
@@ -96,7 +114,11 @@ class Refiner {
             {key.first, key.second, pair.distance / pair.area_m2, angle_of(key, refined), pair.area_m2});
     }
     by_overlap(refined.moved);
-    if (!refined.moved.empty()) refined.spread = settled_among(pairs, {}, scatter_of(pairs)).spread;
+    if (refined.moved.empty()) return;
+    const double factor = scatter_of(pairs);
+    Matrix6d planes = Matrix6d::Zero();
+    for (const auto& [key, pair] : pairs) planes += pair.information / factor;
+    refined.spread = settled_among(pairs, {}, factor, stay_where_weak(planes)).spread;
   }
 
  private:
@@ -131,22 +153,28 @@ class Refiner {
   /// Planes of one direction seem to hold the others a little, by the errors of their normals: what is that
   /// weak is left out, so that the pose stays where it is there, or goes where openings want it.
   static NormalEquations without_weak(const NormalEquations& planes) {
-    // Turns are measured by what they move at the typical lever, so that they compare with shifts.
-    const double lever = std::sqrt(planes.normal.topLeftCorner<3, 3>().trace() /
-                                   std::max(1e-12, planes.normal.bottomRightCorner<3, 3>().trace()));
-    Vector6d unit;
-    unit << Vector3d::Constant(1.0 / std::max(0.1, lever)), Vector3d::Ones();
-    const Matrix6d scaled = unit.asDiagonal() * planes.normal * unit.asDiagonal();
-    const Spectrum6 spectrum = spectrum_of(scaled);
+    const HeldFreedoms held(planes.normal);
     NormalEquations kept;
     for (Eigen::Index k = 0; k < 6; ++k) {
-      if (spectrum.values[k] < kWeakShare * scaled.trace()) continue;
-      const Vector6d d = spectrum.vectors.col(k);
-      const Vector6d back = d.cwiseQuotient(unit);
-      kept.normal += spectrum.values[k] * back * back.transpose();
-      kept.right += d.dot(unit.cwiseProduct(planes.right)) * back;
+      if (held.is_weak(k)) continue;
+      const Vector6d d = held.spectrum.vectors.col(k);
+      const Vector6d back = d.cwiseQuotient(held.unit);
+      kept.normal += held.spectrum.values[k] * back * back.transpose();
+      kept.right += d.dot(held.unit.cwiseProduct(planes.right)) * back;
     }
     return kept;
+  }
+
+  /// Information that keeps a pose where it is along what `planes` hardly hold.
+  static Matrix6d stay_where_weak(const Matrix6d& planes) {
+    const HeldFreedoms held(planes);
+    Matrix6d stay = Matrix6d::Zero();
+    for (Eigen::Index k = 0; k < 6; ++k) {
+      if (!held.is_weak(k)) continue;
+      const Vector6d back = held.spectrum.vectors.col(k).cwiseQuotient(held.unit);
+      stay += held.trace * back * back.transpose();
+    }
+    return stay;
   }
 
   /// One Gauss-Newton step. Far from the goal a tile says no more than `plane_sigma_m` allows: else the first
@@ -266,15 +294,16 @@ class Refiner {
 
   /// The likeliest pose near the one under which `pairs` were found, given that some planes may have been
   /// moved. `openings`: what these say of shifts; `factor`: of the variances that the weights are made with.
+  /// `stay`: as in settle_among_moved.
   static SettledPose settled_among(const PairMap& pairs, const std::vector<PlaneSums>& openings,
-                                   double factor) {
+                                   double factor, const Matrix6d& stay = Matrix6d::Zero()) {
     std::vector<PlaneSums> planes;
     for (const auto& [key, pair] : pairs) {
       planes.push_back(pair);
       planes.back().counts = std::min(1.0, pair.area_m2 / kWholePlaneM2);
     }
     planes.insert(planes.end(), openings.begin(), openings.end());
-    return settle_among_moved(planes, pair_slope(pairs, factor), factor);
+    return settle_among_moved(planes, pair_slope(pairs, factor), factor, stay);
   }
 
   [[nodiscard]] const Features& model_features() const {
@@ -557,8 +586,7 @@ RefinedPose inverted(const RefinedPose& pose) {
   Matrix6d turn = Matrix6d::Zero();
   turn.topLeftCorner<3, 3>() = back.target_from_source.rotation;
   turn.bottomRightCorner<3, 3>() = back.target_from_source.rotation;
-  for (Matrix6d* held : {&back.information, &back.geometry_m2, &back.formal_information, &back.spread})
-    *held = turn * *held * turn.transpose();
+  for (Matrix6d* held : about_centre(back)) *held = turn * *held * turn.transpose();
   for (std::vector<PlaneMatch>* matches : {&back.matches, &back.moved}) {
     for (PlaneMatch& match : *matches) {
       std::swap(match.source, match.target);

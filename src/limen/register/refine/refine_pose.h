@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "limen/match/openings/match_openings.h"
@@ -28,6 +29,11 @@ struct RefinedPose {
   /// it is part of the information.
   Matrix6d spread = Matrix6d::Zero();
 };
+
+/// All of a pose that turns with the target's axes.
+inline std::array<Matrix6d*, 4> about_centre(RefinedPose& pose) {
+  return {&pose.information, &pose.geometry_m2, &pose.formal_information, &pose.spread};
+}
 
 /// Covariance of (rotation, translation) about `pose.centre`, target axes, SI; a freedom that nothing holds
 /// has a deviation of 1000 m or radians.

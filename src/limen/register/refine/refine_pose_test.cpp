@@ -8,11 +8,13 @@
 #include "support/synthetic_room.h"
 #include <gtest/gtest.h>
 
+#include "limen/base/progress.h"
 #include "limen/base/random.h"
 #include "limen/geometry/random_vectors.h"
 #include "limen/geometry/rigid.h"
 #include "limen/register/judge/score_pose.h"
 #include "limen/register/prepare/prepare_scan.h"
+#include "limen/register/prepare/prepared_pair.h"
 #include "limen/register/register.h"
 
 namespace limen {
@@ -105,6 +107,61 @@ TEST(RefinePose, AFloorThatWasRaisedBetweenTheScansLeavesTheHeightOpenByAsMuch) 
     EXPECT_LT(deviation.z(), raised_m);
     EXPECT_LT(deviation.head<2>().norm(), 0.001);
   }
+}
+
+/// Turned about its scanner.
+Scan turned(Scan scan, const Matrix3d& rotation) {
+  for (Vector3d& x : scan.points) x = rotation * x;
+  return scan;
+}
+
+TEST(RefinePose, WhatAMovedFloorLeavesOpenTurnsWithTheTarget) {
+  const Scan room = box_scan(40000, -1.2, 1.5);
+  const Scan later = with_raised_floor(room, 0.04);
+  const Matrix3d roll = rotation_exp(Vector3d(1.5, 0.2, 0.0));
+  const auto covariance_of_shifts = [&](const Scan& target) {
+    const PreparedPair pair{prepare_scan(room, prepare_options({})),
+                            prepare_scan(target, prepare_options({}))};
+    return Matrix3d(register_prepared(pair, {}, silent_monitor()).sigma.covariance.bottomRightCorner<3, 3>());
+  };
+  const Matrix3d upright = covariance_of_shifts(later);
+  const Matrix3d rolled = covariance_of_shifts(turned(later, roll));
+  EXPECT_GT(upright(2, 2), 1e-4);
+  EXPECT_LT((rolled - roll * upright * roll.transpose()).norm(), 0.1 * upright.norm()) << rolled;
+}
+
+/// Two long walls, a floor and a ceiling, between which nothing holds the shift along them.
+Scan corridor(double ceiling_m, std::uint64_t seed) {
+  RandomStream random(seed);
+  Scan scan;
+  scan.name = "corridor";
+  for (int i = 0; i < 60000; ++i) {
+    const double x = random.uniform(-5.0, 5.0);
+    const bool wall = random.below(2) == 0;
+    const bool first = random.below(2) == 0;
+    Vector3d at(x, wall ? (first ? -1.5 : 1.5) : random.uniform(-1.5, 1.5),
+                wall ? random.uniform(-1.5, ceiling_m) : (first ? -1.5 : ceiling_m));
+    scan.points.push_back(at + 0.002 * random.normal() * at.normalized());
+  }
+  scan.centres = {Vector3d::Zero()};
+  return scan;
+}
+
+TEST(RefinePose, AMovedCeilingOpensNoShiftThatWallsHoldWhereAnotherIsFree) {
+  const PrepareOptions options = prepare_options({});
+  const PreparedScan source = prepare_scan(corridor(1.2, 1), options);
+  const PreparedScan target = prepare_scan(corridor(1.16, 2), options);
+  const Matrix3d rotation = target.upright_from_scan * source.upright_from_scan.transpose();
+  const Vector3d shift = source.extracted.features.local_origin - target.extracted.features.local_origin;
+  RefinedPose pose =
+      refine_pose(source.view(), target.view(), {rotation, target.upright_from_scan * shift}, {});
+  find_moved(source.view(), target.view(), {}, pose);
+  ASSERT_EQ(pose.moved.size(), 1u);
+  const Matrix3d spread =
+      rotation.transpose() * pose.spread.bottomRightCorner<3, 3>() * rotation;  // along the corridor, ...
+  EXPECT_LT(std::sqrt(spread(0, 0)), 1e-3);
+  EXPECT_LT(std::sqrt(spread(1, 1)), 1e-3);
+  EXPECT_GT(std::sqrt(spread(2, 2)), 0.01);
 }
 
 TEST(RefinePose, OfARoomThatIsAsItWasNothingIsMoved) {

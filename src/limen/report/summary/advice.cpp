@@ -190,7 +190,7 @@ std::vector<std::string> steps_registered(const RegistrationReport& report, cons
   add_step_of_moved(report, steps);
   for (const auto& [side, name] :
        {std::pair(&report.source, "source"), std::pair(&report.target, "target")}) {
-    if (side->kind != "scan" || side->place.source != PlaceSource::unknown || side->mobile) continue;
+    if (!may_have_moved(report, *side)) continue;
     steps.push_back(
         fmt::format("if the scanner of {} stood in one place, state its position, and the accuracy will be "
                     "better: --{}-origin x,y,z",

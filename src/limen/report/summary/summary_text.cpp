@@ -67,7 +67,7 @@ std::string rest_words(const RegistrationReport& report) {
                          : "how far planes disagree or were moved";
   if (report.source.mobile || report.target.mobile) text += ", and how far trajectories drift";
   for (const InputSummary* side : {&report.source, &report.target}) {
-    if (side->kind == "scan" && side->place.source == PlaceSource::unknown && !side->mobile)
+    if (may_have_moved(report, *side))
       text += fmt::format(", and that the scanner of {} may have moved", file_name(*side));
   }
   return text;

@@ -73,4 +73,9 @@ bool in_model(const RegistrationReport& report) {
   return report.source.kind == "model" || report.target.kind == "model";
 }
 
+bool may_have_moved(const RegistrationReport& report, const InputSummary& side) {
+  return side.kind == "scan" && side.place.source == PlaceSource::unknown && !side.mobile &&
+         report.result.best.matched_segments == 0;
+}
+
 }  // namespace limen

@@ -35,4 +35,7 @@ bool is_open(const RegistrationResult& result, bool rotation, int axis);
 /// Whether one of the sides is a building model.
 bool in_model(const RegistrationReport& report);
 
+/// Whether the stated accuracy counts that the scanner of a side may have moved: its position is unknown.
+bool may_have_moved(const RegistrationReport& report, const InputSummary& side);
+
 }  // namespace limen
