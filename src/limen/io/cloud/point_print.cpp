@@ -20,6 +20,17 @@ constexpr double kMarkM = 1e-4;
 /// A step that every format has: single precision, tenths of a millimetre.
 constexpr double kLeastStepM = 2e-5;
 
+/// As files of whole millimetres have it, whatever their offset.
+double millimetres_of(const Scan& scan) {
+  constexpr double kStepM = 1e-3;
+  constexpr double kEqual = 1e-4;  // of a step
+  const bool all = std::all_of(scan.points.begin(), scan.points.end(), [&](const Vector3d& point) {
+    const Vector3d steps = (point - scan.points.front()) / kStepM;
+    return (steps - steps.array().round().matrix()).lpNorm<Eigen::Infinity>() < kEqual;
+  });
+  return all ? kStepM : 0.0;
+}
+
 std::array<double, 4> spread_of(const Scan& scan) {
   if (scan.points.empty()) return {};
   const auto count = static_cast<double>(scan.size());
@@ -57,7 +68,8 @@ std::vector<std::uint64_t> marks_of(const Scan& scan) {
 }  // namespace
 
 PointPrint print_of(const Scan& scan) {
-  return {scan.size(), spread_of(scan), coordinate_step_m(scan), marks_of(scan)};
+  return {scan.size(), spread_of(scan), std::max(coordinate_step_m(scan), millimetres_of(scan)),
+          marks_of(scan)};
 }
 
 bool same_points(const PointPrint& a, const PointPrint& b) {

@@ -18,7 +18,7 @@ struct PointPrint {
   /// Their deviations along the principal axes and their mean distance from the middle, metres: the same in
   /// any order and after any motion.
   std::array<double, 4> spread_m{};
-  double step_m = 0.0;  ///< that their coordinates are rounded to; 0: to less than a scanner's noise
+  double step_m = 0.0;  ///< that their coordinates are rounded to: a millimetre or more; 0: less
   /// The least of the numbers that the places of the points have, ascending: of a part some of the same,
   /// where it was not moved nor rounded to more than some micrometres.
   std::vector<std::uint64_t> marks;
