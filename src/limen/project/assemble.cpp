@@ -382,12 +382,13 @@ class Assembler {
     result_.links.push_back(std::move(stated));
   }
 
+  static bool is_sure(Outcome pair) { return pair == Outcome::registered || pair == Outcome::probable; }
+
   /// A pair that is sure of its pose, beside which the solution puts its scans, shows that something changed.
   void note_change(const GraphLink& link, const ProjectLink& stated) {
-    const bool sure = stated.pair == Outcome::registered || stated.pair == Outcome::probable;
     const SolvedLink& solved = stated.solved;
-    if (!sure || solved.state != LinkState::rejected || solved.loop_error_m > kNoOtherPlaceM ||
-        solved.loop_error_rad > kOtherPlaceRad)
+    if (!is_sure(stated.pair) || solved.state != LinkState::rejected ||
+        solved.loop_error_m > kNoOtherPlaceM || solved.loop_error_rad > kOtherPlaceRad)
       return;
     result_.notes.push_back(
         fmt::format("{} and {} alone fit {:.0f} mm and {:.2f} deg from where all scans together have them: "
@@ -396,7 +397,7 @@ class Assembler {
                     degrees(solved.loop_error_rad)));
   }
 
-  /// So do planes that lie beside their counterparts.
+  /// So do planes that lie beside their counterparts in a pair that is sure of its pose.
   void tell_moved() {
     constexpr std::size_t kNamed = 3;
     std::string pairs;
@@ -406,9 +407,11 @@ class Assembler {
       if (pair_of_[k] < 0 || solved_.links[k].pose != link.best || digest(link.source).model ||
           digest(link.target).model)
         continue;
+      const RegistrationResult& pair = pairs_[static_cast<std::size_t>(pair_of_[k])].result;
+      if (!is_sure(pair.outcome)) continue;
       double most_m = 0.0;
       double area_m2 = 0.0;
-      for (const PlaneMatch& plane : pairs_[static_cast<std::size_t>(pair_of_[k])].result.moved) {
+      for (const PlaneMatch& plane : pair.moved) {
         most_m = std::max(most_m, std::abs(plane.distance_m));
         area_m2 += plane.overlap_m2;
       }

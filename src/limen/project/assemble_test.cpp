@@ -12,7 +12,8 @@ namespace limen {
 namespace {
 
 /// Four scans in a row, every pair sure of its pose, the first of them off by so much.
-std::vector<std::string> notes_where_off(double off_m, double moved_m2 = 0.0) {
+std::vector<std::string> notes_where_off(double off_m, double moved_m2 = 0.0,
+                                         Outcome outcome = Outcome::registered) {
   std::vector<ProjectNode> nodes(4);
   ProjectResult result;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
@@ -31,7 +32,10 @@ std::vector<std::string> notes_where_off(double off_m, double moved_m2 = 0.0) {
       pair.result.best.score = pair.result.best.agreeing_m2 = 30.0;
       pair.result.others = OtherExplanations{0.0, 0.0, 0.0};
       pair.result.sigma.centre = shift;
-      if (moved_m2 > 0.0 && pairs.empty()) pair.result.moved = {{0, 0, 0.06, 0.0, moved_m2}};
+      if (moved_m2 > 0.0 && pairs.empty()) {
+        pair.result.moved = {{0, 0, 0.06, 0.0, moved_m2}};
+        pair.result.outcome = outcome;
+      }
       pairs.push_back(pair);
     }
   }
@@ -52,6 +56,7 @@ TEST(Assemble, PlanesBesideTheirCounterpartsAreNoted) {
   const std::vector<std::string> notes = notes_where_off(0.0, 4.0);
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_NE(notes[0].find("b and a (4.0 m2, up to 60 mm)"), std::string::npos) << notes[0];
+  EXPECT_TRUE(notes_where_off(0.0, 4.0, Outcome::ambiguous).empty());
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ constexpr int kLeastTilted = 8;         // tiles of a pair whose slopes are look
 constexpr double kMovedGateM = 0.06;    // as far as walls are looked for that were moved
 constexpr double kBesideGateM = 0.15;   // the same in two scans: two walls may both be lined
 constexpr double kBesideM2 = 1.0;       // less may be furniture that stands elsewhere
+constexpr double kBesideSigmas = 3.0;   // of the pose: what lies beside by less may be met under a near one
 constexpr double kBesideRad = 0.02;     // a plane that was moved keeps its direction
 constexpr double kBesideShare = 0.3;    // of it: so much that is met where it is was not moved
 constexpr double kOpeningErrsM = 0.02;  // how far windows and doors are from where a model has them: 1 sigma
@@ -108,8 +109,10 @@ class Refiner {
     }
     for (auto it = pairs.begin(); it != pairs.end();)
       it = is_met(it->second) || lies_beside(*it, met, refined) ? std::next(it) : pairs.erase(it);
+    const Matrix6d covariance = covariance_of(refined);
     for (const auto& [key, pair] : pairs) {
-      if (!is_met(pair) && pair.area_m2 >= kBesideM2)
+      if (!is_met(pair) && pair.area_m2 >= kBesideM2 &&
+          std::abs(pair.mean_m()) > kBesideSigmas * pair.sigma_m(covariance))
         refined.moved.push_back(
             {key.first, key.second, pair.distance / pair.area_m2, angle_of(key, refined), pair.area_m2});
     }
@@ -212,6 +215,11 @@ class Refiner {
     double distance = 0.0;  // area times distance
     int tiles = 0;
 
+    /// How well a pose of this covariance knows its mean residual.
+    [[nodiscard]] double sigma_m(const Matrix6d& covariance) const {
+      const Vector6d row = shared.col(0) / weight;
+      return std::sqrt(std::max(0.0, row.dot(covariance * row)));
+    }
     /// What the residuals would lose, were the pair freely tilted.
     [[nodiscard]] double stated_by_slopes() const {
       const Eigen::Vector2d by_slopes = residuals.tail<2>();
