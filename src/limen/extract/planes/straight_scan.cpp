@@ -14,14 +14,14 @@ namespace limen {
 namespace {
 
 constexpr int kDriftRounds = 6;
-// The planes that tell the drift.
+// The planes that show the drift.
 constexpr double kDriftPlaneM = 0.025;  // threshold
 constexpr int kFewestInliers = 100;
 constexpr double kDriftPlaneWidthM = 2.5;  // the narrower side
 constexpr double kDriftNoiseM = 0.005;     // of a point about its plane, relief and all
 constexpr double kPointsPerLook = 50.0;    // so many points err alike
 constexpr std::size_t kMostDriftPoints = 150000;
-// A trajectory's error is given at knots so far apart.
+// A trajectory's error is given at knots at this distance.
 constexpr double kKnotS = 1.0;
 constexpr int kMostKnots = 100;
 constexpr double kDriftChangeM = 0.003;  // from knot to knot, one standard deviation

@@ -17,8 +17,8 @@ namespace {
 /// Marks of a scan, so many that a hundredth of its points has some of them.
 constexpr std::size_t kMarks = 1024;
 constexpr double kMarkM = 1e-4;
-/// A step that every format has: single precision, tenths of a millimetre.
-constexpr double kLeastStepM = 2e-5;
+/// A step that any format may have.
+constexpr double kLeastStepM = 1e-4;
 
 /// As files of whole millimetres have it, whatever their offset.
 double millimetres_of(const Scan& scan) {

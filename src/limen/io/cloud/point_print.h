@@ -31,7 +31,7 @@ bool same_points(const PointPrint& a, const PointPrint& b);
 /// Whether nearly all points of `part` are points of `whole` too.
 bool is_part_of(const PointPrint& part, const PointPrint& whole);
 
-/// What a user is told who registers a scan of so many points to itself.
+/// What a user reads who registers a scan of so many points to itself.
 std::string same_points_note(std::size_t points);
 /// The same where the points of TARGET are those of SOURCE, or of one side are a part of the other's; empty
 /// where both are scans of their own.

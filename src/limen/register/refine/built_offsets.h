@@ -65,7 +65,7 @@ struct SettledPose {
 /// millimetres that builders err (learned from these planes), or was moved by centimetres, or is another
 /// surface that lies near it. Which ones were moved is not known: poses that take other planes for the moved
 /// ones are sought too, and how likely they are and how far off is in the information.
-/// `stay`: information that something else gives of the pose, which speaks for no step.
+/// `stay`: information by which something else keeps the pose where it is.
 SettledPose settle_among_moved(const std::vector<PlaneSums>& planes, double slope, double factor,
                                const Matrix6d& stay = Matrix6d::Zero());
 
