@@ -11,7 +11,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -112,17 +111,6 @@ inline std::size_t facades_seen(const Truth& truth) {
     if (!known) normals.push_back(opening.normal);
   }
   return normals.size();
-}
-
-/// The thickness of the façades that the station's room has open windows in; nothing where they differ.
-inline std::optional<double> facade_thickness(const Truth& truth) {
-  std::optional<double> thickness;
-  for (const TrueOpening& opening : truth.openings) {
-    if (!opening.exterior || opening.curtained || opening.rooms[0] != truth.scans[0].room) continue;
-    if (thickness && std::abs(*thickness - opening.thickness_m) > 1e-6) return std::nullopt;
-    thickness = opening.thickness_m;
-  }
-  return thickness;
 }
 
 /// What one method gave on one pair.
