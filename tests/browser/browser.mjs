@@ -28,21 +28,21 @@ export const openBrowser = async (playwright, { webgl = true } = {}) => {
   return { context, close: async () => { await context.close(); rmSync(profile, { recursive: true, force: true }); } };
 };
 
-/** A page of a report with everything it says and asks for: `heard.problems` must stay empty. */
+/** A page of a report with everything it says and asks for: `record.problems` must stay empty. */
 export const openReport = async (context, file, { ready = true, viewport, scheme = 'light' } = {}) => {
   const page = await context.newPage();
   if (viewport) await page.setViewportSize(viewport);
   await page.emulateMedia({ colorScheme: scheme, reducedMotion: 'reduce' });
-  const heard = { problems: [], requests: [] };
+  const record = { problems: [], requests: [] };
   page.on('console', (message) => {
-    if (['error', 'warning'].includes(message.type()) && !/GPU stall|performance/i.test(message.text())) heard.problems.push(message.text());
+    if (['error', 'warning'].includes(message.type()) && !/GPU stall|performance/i.test(message.text())) record.problems.push(message.text());
   });
-  page.on('pageerror', (error) => heard.problems.push(String(error.stack ?? error)));
-  page.on('request', (request) => heard.requests.push(request.url()));
+  page.on('pageerror', (error) => record.problems.push(String(error.stack ?? error)));
+  page.on('request', (request) => record.requests.push(request.url()));
   await page.goto(pathToFileURL(file).href);
   if (ready) await page.waitForSelector('html[data-ready]', { timeout: 60000 });
   if (ready) await page.waitForFunction(() => +document.getElementById('canvas').dataset.frames > 0);
-  return { page, heard };
+  return { page, record };
 };
 
 /** Runs limen; any of its answers is fine, only bad input and faults are not. */

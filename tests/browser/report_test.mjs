@@ -41,8 +41,8 @@ after(async () => {
 });
 
 describe('a registered pair', () => {
-  let page; let heard;
-  before(async () => ({ page, heard } = await openReport(browser.context, report('registered'))));
+  let page; let record;
+  before(async () => ({ page, record } = await openReport(browser.context, report('registered'))));
 
   test('tells the verdict first and shows something', async () => {
     assert.match(await page.locator('h1').innerText(), /^Registered: the two scans fit in one way only$/);
@@ -166,9 +166,9 @@ describe('a registered pair', () => {
   });
 
   test('asks nothing of the network and complains of nothing', async () => {
-    assert.deepEqual(heard.problems, []);
-    assert.deepEqual(heard.requests.filter((url) => !/^(file|data):/.test(url)), []);
-    assert.equal(heard.requests.filter((url) => url.startsWith('file:')).length, 1);
+    assert.deepEqual(record.problems, []);
+    assert.deepEqual(record.requests.filter((url) => !/^(file|data):/.test(url)), []);
+    assert.equal(record.requests.filter((url) => url.startsWith('file:')).length, 1);
     const blocked = await page.evaluate(() => fetch('https://example.org/').then(() => false, () => true));
     assert.ok(blocked, 'the page must not be able to reach out');
   });
@@ -197,13 +197,13 @@ describe('a registered pair', () => {
 
 describe('a report to hand on', () => {
   test('has its head, is in the language asked for, and has no folder in a file name', async () => {
-    const { page, heard } = await openReport(browser.context, report('handed_on'));
+    const { page, record } = await openReport(browser.context, report('handed_on'));
     assert.match(await page.locator('.cover-title').innerText(), /north wing/);
     assert.match(await page.locator('.cover').innerText(), /Projekt\s+2026-117[\s\S]*Bearbeiter/);
     assert.match(await page.locator('.verdict').innerText(), /Dies ist die richtige Lage mit einer Wahrscheinlichkeit von/);
     assert.ok((await page.locator('.path').allInnerTexts()).every((name) => !name.includes('/')));
     assert.equal(await page.title(), await page.locator('.cover-title').innerText());
-    assert.deepEqual(heard.problems, []);
+    assert.deepEqual(record.problems, []);
     await page.close();
   });
 
@@ -258,35 +258,35 @@ describe('a report to hand on', () => {
 
 describe('other outcomes', () => {
   test('a room that the model repeats: every place can be looked at', async () => {
-    const { page, heard } = await openReport(browser.context, report('in_model'));
+    const { page, record } = await openReport(browser.context, report('in_model'));
     assert.match(await page.locator('h1').innerText(), /^Not decided: \d+ places fit about equally well$/);
     const first = await pixels(page);
     const other = await settled(page, () => page.click('#next'));
     assert.notEqual(other.sum, first.sum);
-    assert.deepEqual(heard.problems, []);
+    assert.deepEqual(record.problems, []);
     await page.close();
   });
 
   test('no match: both stand side by side, nothing to toggle', async () => {
-    const { page, heard } = await openReport(browser.context, report('no_match'));
+    const { page, record } = await openReport(browser.context, report('no_match'));
     assert.match(await page.locator('h1').innerText(), /^No match:/);
     assert.ok(!(await page.isVisible('#toggle')));
     assert.ok(!(await page.isVisible('#poses')));
     // A room beside a street is small.
     const seen = await pixels(page);
     assert.ok(seen.orange > 0.002 && seen.orange < 0.998);
-    assert.deepEqual(heard.problems, []);
+    assert.deepEqual(record.problems, []);
     await page.close();
   });
 
   test('without WebGL2 it says so and still tells everything else', async () => {
     const plain = await openBrowser(playwright, { webgl: false });
-    const { page, heard } = await openReport(plain.context, report('registered'), { ready: false });
+    const { page, record } = await openReport(plain.context, report('registered'), { ready: false });
     await page.waitForSelector('#fallback:not([hidden])');
     assert.match(await page.locator('#fallback').innerText(), /no WebGL2/);
     assert.equal(await page.locator('.sections svg').count(), 3);
     assert.ok(await page.locator('#sigma tbody tr').count() === 6);
-    assert.deepEqual(heard.problems.filter((text) => !/webgl/i.test(text)), []);
+    assert.deepEqual(record.problems.filter((text) => !/webgl/i.test(text)), []);
     await plain.close();
   });
 });

@@ -16,7 +16,7 @@ const folder = mkdtempSync(join(tmpdir(), 'limen-serve-'));
 const shots = process.env.LIMEN_SCREENSHOTS;
 const museum = (name) => join(folder, 'museum', name);
 let browser; let server; let address; let page;
-const heard = { problems: [], requests: [] };
+const record = { problems: [], requests: [] };
 
 /** Starts it and waits for the address that it tells. */
 const serve = async () => {
@@ -33,9 +33,9 @@ const openPage = async (scheme = 'light', viewport) => {
   const opened = await browser.context.newPage();
   if (viewport) await opened.setViewportSize(viewport);
   await opened.emulateMedia({ colorScheme: scheme, reducedMotion: 'reduce' });
-  opened.on('console', (message) => ['error', 'warning'].includes(message.type()) && heard.problems.push(message.text()));
-  opened.on('pageerror', (error) => heard.problems.push(String(error.stack ?? error)));
-  opened.on('request', (request) => heard.requests.push(request.url()));
+  opened.on('console', (message) => ['error', 'warning'].includes(message.type()) && record.problems.push(message.text()));
+  opened.on('pageerror', (error) => record.problems.push(String(error.stack ?? error)));
+  opened.on('request', (request) => record.requests.push(request.url()));
   await opened.goto(address);
   await opened.waitForSelector('html[data-ready]', { timeout: 20000 });
   return opened;
@@ -96,7 +96,7 @@ describe('a page to drop files on', () => {
     await page.waitForSelector('#uploads .fault');
     assert.match(await page.locator('#uploads').innerText(), /a file of this name exists/);
     await page.click('#uploads button');
-    heard.problems = heard.problems.filter((text) => !/409/.test(text));
+    record.problems = record.problems.filter((text) => !/409/.test(text));
   });
 
   test('refuses what is neither a scan nor a model', async () => {
@@ -105,7 +105,7 @@ describe('a page to drop files on', () => {
     assert.match(await page.locator('#uploads').innerText(), /photo\.jpg[\s\S]*E57, LAS/);
     assert.ok(!existsSync(join(folder, 'site', 'files', 'photo.jpg')));
     await page.click('#uploads button');
-    heard.problems = heard.problems.filter((text) => !/415/.test(text));
+    record.problems = record.problems.filter((text) => !/415/.test(text));
   });
 
   test('keeps what is selected after a reload', async () => {
@@ -247,7 +247,7 @@ describe('work', () => {
     assert.deepEqual(kept(), []);
     const refused = await page.evaluate(() => fetch('jobs', { method: 'POST', body: JSON.stringify({ kind: 'decide', of: 6, answer: 'forget x' }) }).then((response) => response.status));
     assert.equal(refused, 400);
-    heard.problems = heard.problems.filter((text) => !/400/.test(text));
+    record.problems = record.problems.filter((text) => !/400/.test(text));
   });
 
   test('what fails says why, in the words of the program', async () => {
@@ -345,7 +345,7 @@ describe('two scans linked by hand', () => {
     await page.click('#link-clear');
     await click(0, [12, await page.locator('#plan-source').evaluate((canvas) => canvas.clientHeight - 12)]);
     assert.match(await said(), /No point is near enough/);
-    heard.problems = heard.problems.filter((text) => !/400/.test(text));
+    record.problems = record.problems.filter((text) => !/400/.test(text));
   });
 
   test('by keys alone a place is set, and a scan is moved over the other', async () => {
@@ -426,8 +426,8 @@ describe('on every screen', () => {
   }
 
   test('it complains of nothing, asks nobody else, and says when the server has ended', async () => {
-    assert.deepEqual(heard.problems, []);
-    assert.deepEqual(heard.requests.filter((url) => !url.startsWith(address) && !url.startsWith('data:')), []);
+    assert.deepEqual(record.problems, []);
+    assert.deepEqual(record.requests.filter((url) => !url.startsWith(address) && !url.startsWith('data:')), []);
     const closed = new Promise((resolve) => { server.on('exit', (code) => resolve(code)); });
     server.kill('SIGINT');
     assert.equal(await closed, 0);

@@ -50,8 +50,8 @@ const clickSomething = async (page, from = 0) => {
 };
 
 describe('both sides of a result', () => {
-  let page; let heard;
-  before(async () => ({ page, heard } = await openReport(browser.context, view('pair'))));
+  let page; let record;
+  before(async () => ({ page, record } = await openReport(browser.context, view('pair'))));
 
   test('shows both and tells how many points', async () => {
     assert.equal(await page.title(), 'indoor_00.ply, outdoor.ply');
@@ -159,16 +159,16 @@ describe('both sides of a result', () => {
   });
 
   test('asks nothing of the network, complains of nothing, and is small', async () => {
-    assert.deepEqual(heard.problems, []);
-    assert.deepEqual(heard.requests.filter((url) => !/^(file|data):/.test(url)), []);
-    assert.equal(heard.requests.filter((url) => url.startsWith('file:')).length, 1);
+    assert.deepEqual(record.problems, []);
+    assert.deepEqual(record.requests.filter((url) => !/^(file|data):/.test(url)), []);
+    assert.equal(record.requests.filter((url) => url.startsWith('file:')).length, 1);
     assert.ok(statSync(view('pair')).size < 2.5e6);
   });
 });
 
 describe('a station with a panorama', () => {
   test('a click on its place shows it', async () => {
-    const { page, heard } = await openReport(browser.context, view('station'));
+    const { page, record } = await openReport(browser.context, view('station'));
     const button = page.locator('button.sight');
     assert.equal(await button.count(), 1);
     await button.click();
@@ -181,19 +181,19 @@ describe('a station with a panorama', () => {
     await image.waitFor({ state: 'detached' });
     await settled(page, () => page.uncheck('[data-side="0"]'));
     assert.ok(!(await button.isVisible()));
-    assert.deepEqual(heard.problems, []);
+    assert.deepEqual(record.problems, []);
     await page.close();
   });
 });
 
 describe('a model', () => {
   test('its surfaces are shown and can be clicked', async () => {
-    const { page, heard } = await openReport(browser.context, view('model'));
+    const { page, record } = await openReport(browser.context, view('model'));
     assert.equal(await page.locator('h1').innerText(), 'The model of the office');
     assert.ok((await pixels(page)).drawn > 0.05);
     assert.match(await clickSomething(page), /Surface\s+[\d.]+ m²/);
     if (shots) await page.screenshot({ path: join(shots, 'view-model.png') });
-    assert.deepEqual(heard.problems, []);
+    assert.deepEqual(record.problems, []);
     await page.close();
   });
 });
@@ -202,7 +202,7 @@ describe('the page of a project', () => {
   const report = () => join(folder, 'project', 'report.html');
 
   test('shows all scans, and one link alone before and after', async () => {
-    const { page, heard } = await openReport(browser.context, report());
+    const { page, record } = await openReport(browser.context, report());
     const all = await pixels(page);
     assert.ok(all.drawn > 0.03, `only ${all.drawn} of the canvas is drawn`);
     assert.equal(await page.locator('.spot:not([hidden])').count(), 2);
@@ -226,8 +226,8 @@ describe('the page of a project', () => {
     assert.equal(await page.inputValue('#pair'), '');
     assert.equal(await page.locator('.spot:not([hidden])').count(), 2);
     assert.match(await clickSomething(page), /At\s+-?[\d.]+ /);
-    assert.deepEqual(heard.problems, []);
-    assert.deepEqual(heard.requests.filter((url) => !url.startsWith('file:') && !url.startsWith('data:')), []);
+    assert.deepEqual(record.problems, []);
+    assert.deepEqual(record.requests.filter((url) => !url.startsWith('file:') && !url.startsWith('data:')), []);
     await page.close();
   });
 
@@ -244,12 +244,12 @@ describe('the page of a project', () => {
 
   for (const [width, height, scheme] of [[1280, 900, 'light'], [1280, 900, 'dark'], [390, 844, 'light']]) {
     test(`everybody can use it, ${width} px, ${scheme}`, async () => {
-      const { page, heard } = await openReport(browser.context, report(), { viewport: { width, height }, scheme });
+      const { page, record } = await openReport(browser.context, report(), { viewport: { width, height }, scheme });
       assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
       assert.deepEqual(await accessibilityFaults(page), []);
       await settled(page, () => page.click('[data-link="0"]'));
       assert.deepEqual(await accessibilityFaults(page), []);
-      assert.deepEqual(heard.problems, []);
+      assert.deepEqual(record.problems, []);
       if (shots) await page.screenshot({ path: join(shots, `project-${width}-${scheme}.png`), fullPage: true });
       await page.close();
     });
