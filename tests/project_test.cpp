@@ -176,6 +176,15 @@ TEST_F(Project, WhatIsDamagedInTheStoreIsMadeAgain) {
   }
 }
 
+TEST_F(Project, AResultThatCannotBeWrittenLeavesTheFormerReport) {
+  const std::vector<std::string> scans = simulate();
+  std::filesystem::create_directories(work() / "out" / "project.json");
+  write_whole(work() / "out" / "report.html", "former");
+  const ProgramRun done = run(call(scans, "out"));
+  EXPECT_EQ(done.status, 2) << done.err;
+  EXPECT_EQ(read_whole(work() / "out" / "report.html"), "former");
+}
+
 TEST_F(Project, WhatTheStoreKeepsOfAFileTellsNoOldNameAndIsOfNoOtherKind) {
   const std::vector<std::string> scans = simulate();
   const auto thinned = [&](const std::string& scan, const std::string& out) {

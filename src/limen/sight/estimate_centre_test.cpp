@@ -19,8 +19,10 @@ constexpr double kTileM = 0.3;
 /// Tiles of the walls and the floor of a hall of 30 x 12 x 4 m, as a scanner at the origin, 1.5 m above the
 /// floor, covers them; no denser than `most_per_m2`.
 Features hall(double most_per_m2) {
-  const std::vector<Plane> planes = {{Vector3d::UnitZ(), -1.5},  {-Vector3d::UnitX(), -24.0},
-                                     {Vector3d::UnitX(), -6.0},  {-Vector3d::UnitY(), -8.0},
+  const std::vector<Plane> planes = {{Vector3d::UnitZ(), -1.5},
+                                     {-Vector3d::UnitX(), -24.0},
+                                     {Vector3d::UnitX(), -6.0},
+                                     {-Vector3d::UnitY(), -8.0},
                                      {Vector3d::UnitY(), -4.0}};
   Features features;
   for (const Plane& plane : planes) {

@@ -359,12 +359,37 @@ std::vector<ProjectPicture> pictures_in(const std::filesystem::path& folder,
   return project_pictures(folder, project, result, kMostProjectPoints);
 }
 
-/// question_1.svg and so on; those of an earlier run go.
-void write_question_pictures(const std::filesystem::path& folder, const std::vector<std::string>& drawn) {
-  const auto path = [&](std::size_t number) { return folder / fmt::format("question_{}.svg", number); };
-  for (std::size_t number = 1; number <= kMostPictures; ++number) std::filesystem::remove(path(number));
+/// What a run leaves in its folder: the name and the text of each file, project.json last.
+std::vector<std::pair<std::string, std::string>> files_of(const ProjectResult& result,
+                                                          std::vector<ProjectPicture> pictures,
+                                                          std::string json, const ReportCover& cover,
+                                                          bool georeferenced) {
+  std::vector<std::pair<std::string, std::string>> files;
+  const std::vector<std::string> drawn = question_pictures(result, pictures);
   for (std::size_t k = 0; k < drawn.size(); ++k) {
-    if (!drawn[k].empty()) write_file(path(k + 1), drawn[k]);
+    if (!drawn[k].empty()) files.emplace_back(fmt::format("question_{}.svg", k + 1), drawn[k]);
+  }
+  files.emplace_back("report.html", project_page(result, std::move(pictures), georeferenced, cover));
+  const std::vector<Sheet> sheets = {stations_sheet(result), links_sheet(result), bundle_sheet(result),
+                                     loops_sheet(result), points_sheet(result)};
+  files.emplace_back("stations.csv", csv_of(sheets[0]));
+  files.emplace_back("links.csv", csv_of(sheets[1]));
+  files.emplace_back("tables.xlsx", workbook_of(sheets));
+  files.emplace_back("project.json", std::move(json));
+  return files;
+}
+
+/// All of the files or none; pictures and the printed report of an earlier run go.
+void replace_files(const std::filesystem::path& folder,
+                   const std::vector<std::pair<std::string, std::string>>& files) {
+  std::vector<FileToWrite> written;
+  for (const auto& [name, text] : files) written.push_back({folder / name, text});
+  write_files(written);
+  std::filesystem::remove(folder / "report.pdf");
+  for (std::size_t number = 1; number <= kMostPictures; ++number) {
+    const std::string name = fmt::format("question_{}.svg", number);
+    if (std::none_of(files.begin(), files.end(), [&](const auto& file) { return file.first == name; }))
+      std::filesystem::remove(folder / name);
   }
 }
 
@@ -402,18 +427,8 @@ int run(ProjectCommandOptions options, const Session& session) {
   const std::string json = project_json(result, reported(options, session), system);
   session.monitor->throw_if_cancelled();
   std::vector<ProjectPicture> pictures = pictures_in(folder.path(), options, trajectories, session, result);
-  write_question_pictures(folder.path(), question_pictures(result, pictures));
-  write_file(folder.path() / "report.html",
-             project_page(result, std::move(pictures),
-                          system.system.known() || result.frame_kind == "control", cover));
-  std::filesystem::remove(folder.path() / "report.pdf");  // an earlier run's
-  const std::vector<Sheet> sheets = {stations_sheet(result), links_sheet(result), bundle_sheet(result),
-                                     loops_sheet(result), points_sheet(result)};
-  write_file(folder.path() / "stations.csv", csv_of(sheets[0]));
-  write_file(folder.path() / "links.csv", csv_of(sheets[1]));
-  write_file(folder.path() / "tables.xlsx", workbook_of(sheets));
-  // Last: where it is, the folder is complete.
-  write_file(folder.path() / "project.json", json);
+  replace_files(folder.path(), files_of(result, std::move(pictures), json, cover,
+                                        system.system.known() || result.frame_kind == "control"));
   if (options.pdf) write_pdf(browser, folder.path(), session);
   for (const std::string& note : of_system) session.note(note);
   session.say(summary(result, options.folder));

@@ -17,7 +17,8 @@ TEST(SteadySample, OfADenseScanLeavesNoGaps) {
   constexpr std::size_t kSide = 1000;
   for (std::size_t i = 0; i < kSide; ++i) {
     for (std::size_t j = 0; j < kSide; ++j)
-      scan.points.emplace_back(3.0, 4.0 * static_cast<double>(i) / kSide, 4.0 * static_cast<double>(j) / kSide);
+      scan.points.emplace_back(3.0, 4.0 * static_cast<double>(i) / kSide,
+                               4.0 * static_cast<double>(j) / kSide);
   }
   std::set<int> rings;  // of 5 cm about the middle
   const auto chosen = steady_sample(scan, 2000);
