@@ -11,6 +11,7 @@
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/match/segments/enumerate_segment_poses.h"
 #include "limen/match/segments/segment_distance.h"
 #include "limen/register/judge/verdict.h"
 
@@ -21,6 +22,19 @@ constexpr double kLevelDeg = 2.0;         // segments nearer to the vertical, or
 constexpr double kLevelShare = 0.6;       // of the length of a set that shows its vertical
 constexpr double kVerticalShare = 0.1;    // of it, that must be vertical
 constexpr std::size_t kListedOthers = 8;  // different poses that are listed though they are no rivals
+constexpr std::size_t kMostListed = 200;  // poses besides the best that are reported
+constexpr std::size_t kRefinedSegmentPoses = 300;
+constexpr double kLeastCommonM = 4.0;      // length in common that a pose must show, long segments cut short
+constexpr int kLeastSegments = 6;          // segments in common
+constexpr double kLeastChanceShare = 0.3;  // where rivals explain as much, less than this is chance: no match
+constexpr double kRivalEvidence = 0.5;  // a pose with a smaller share of the best one's evidence is no rival
+constexpr double kRivalShare = 0.45;  // nor one for which less of what distinguishes the two supports it ...
+constexpr double kLeadM = 2.0;        // ... where at least this much more supports the best
+constexpr double kHeldM = 0.3;        // length (times lever^2 for turns) that must hold each freedom
+constexpr double kLooseM = 0.02;      // a shift known less well than this counts as open
+constexpr double kLooseDeg = 0.2;     // and so does a turn
+constexpr double kSegmentPoseDeg = 1.0;  // poses nearer than both bounds are one pose
+constexpr double kSegmentPoseM = 0.06;
 constexpr double kUprightEvidence = 0.8;  // an upright pose as good as this is believed before a tilted one
 
 /// Whether most of a set is vertical or level.
@@ -60,20 +74,16 @@ Contrast contrast(const SegmentFit& first, const SegmentFit& second) {
 /// The work with the smaller set, which is moved on the larger one.
 class SegmentRegistration {
  public:
-  SegmentRegistration(const std::vector<Segment>& moved, const std::vector<Segment>& fixed,
-                      const SegmentRegisterOptions& options)
-      : moved_(moved), fixed_(fixed), options_(options), refiner_(moved, fixed, options.refine) {}
+  SegmentRegistration(const std::vector<Segment>& moved, const std::vector<Segment>& fixed, Gravity gravity)
+      : moved_(moved), fixed_(fixed), gravity_(gravity), refiner_(moved, fixed) {}
 
   void find_candidates() {
-    SegmentPoseOptions enumerating = options_.enumerate;
-    enumerating.gravity_known = options_.gravity == Gravity::up;
-    candidates_ = enumerate_segment_poses(moved_, fixed_, enumerating);
+    candidates_ = enumerate_segment_poses(moved_, fixed_, {.gravity_known = gravity_ == Gravity::up});
     const auto worst = std::find_if(candidates_.begin(), candidates_.end(), [&](const PoseCandidate& c) {
       return c.precedence < 0.5 * candidates_.front().precedence;
     });
     candidates_.erase(worst, candidates_.end());
-    if (candidates_.size() > static_cast<std::size_t>(options_.refined_poses))
-      candidates_.resize(static_cast<std::size_t>(options_.refined_poses));
+    if (candidates_.size() > kRefinedSegmentPoses) candidates_.resize(kRefinedSegmentPoses);
   }
 
   void refine() {
@@ -93,12 +103,12 @@ class SegmentRegistration {
       return;
     }
     const SegmentFit& best = poses_.front().fit;
-    if (best.evidence_m < options_.min_common_m || best.matched_segments < options_.min_segments) {
+    if (best.evidence_m < kLeastCommonM || best.matched_segments < kLeastSegments) {
       result.reason = fmt::format("the sets have only {} segments, {:.1f} m, in common at best",
                                   best.matched_segments, best.matched_m);
       return;
     }
-    result.unobserved = unobserved_freedoms(best.pose, options_.min_held_m);
+    result.unobserved = unobserved_freedoms(best.pose, kHeldM);
     if (too_loose(result.unobserved)) {
       result.unobserved.clear();
       result.reason =
@@ -121,8 +131,8 @@ class SegmentRegistration {
   /// Where the vertical shows in both sets, poses that do not keep it are dropped - unless one of them is
   /// clearly better: then z is not up in both.
   void drop_tilted(std::vector<SegmentFit>& fits) const {
-    if (options_.gravity != Gravity::automatic || !looks_level(moved_) || !looks_level(fixed_)) return;
-    const double upright = std::cos(radians(options_.enumerate.gravity_tolerance_deg));
+    if (gravity_ != Gravity::automatic || !looks_level(moved_) || !looks_level(fixed_)) return;
+    const double upright = std::cos(radians(SegmentPoseOptions{}.gravity_tolerance_deg));
     double best = 0.0;
     double best_upright = 0.0;
     const auto keeps_up = [&](const SegmentFit& fit) {
@@ -139,13 +149,13 @@ class SegmentRegistration {
   [[nodiscard]] bool same(const RefinedPose& a, const RefinedPose& b,
                           const std::vector<UnobservedFreedom>& open) const {
     const Matrix3d turn = a.target_from_source.rotation.transpose() * b.target_from_source.rotation;
-    if (rotation_angle(turn) > radians(options_.same_rotation_deg)) return false;
+    if (rotation_angle(turn) > radians(kSegmentPoseDeg)) return false;
     const Vector3d middle = inverse(a.target_from_source) * a.centre;
     Vector3d shift = b.target_from_source * middle - a.centre;
     for (const UnobservedFreedom& freedom : open) {
       if (!freedom.rotation) shift -= freedom.direction.dot(shift) * freedom.direction;
     }
-    return shift.norm() <= options_.same_shift_m;
+    return shift.norm() <= kSegmentPoseM;
   }
 
   /// Fills poses_.
@@ -163,8 +173,8 @@ class SegmentRegistration {
   /// (8) and (14), as a length: what is covered, from both sides, in metres. Ranks the poses by it.
   void score() {
     SegmentDistanceOptions measuring;
-    measuring.max_distance_m = options_.refine.last_gate_m;
-    measuring.max_angle_rad = radians(options_.refine.max_angle_deg);
+    measuring.max_distance_m = kLastSegmentGateM;
+    measuring.max_angle_rad = radians(kMatchedSegmentsDeg);
     const SegmentSetMeasure measure(fixed_, measuring);
     const double squared = measuring.max_distance_m * measuring.max_distance_m;
     parallel_for(poses_.size(), 4, [&](std::size_t begin, std::size_t end) {
@@ -178,10 +188,10 @@ class SegmentRegistration {
   }
 
   [[nodiscard]] bool is_rival(const SegmentFit& best, const SegmentFit& other) const {
-    if (other.evidence_m < options_.min_rival_value * best.evidence_m) return false;
+    if (other.evidence_m < kRivalEvidence * best.evidence_m) return false;
     const Contrast stated = contrast(best, other);
-    return stated.for_first_m - stated.for_second_m < options_.min_lead_m ||
-           stated.for_second_m > options_.max_rival_share * stated.for_first_m;
+    return stated.for_first_m - stated.for_second_m < kLeadM ||
+           stated.for_second_m > kRivalShare * stated.for_first_m;
   }
 
   void judge_rivals(RegistrationResult& result) {
@@ -192,7 +202,7 @@ class SegmentRegistration {
     const auto rivals = static_cast<std::size_t>(others - poses_.begin()) - 1;
     rivals_ = rivals;
     const double share = best.evidence_m / refiner_.total_evidence_m();
-    if (rivals > 0 && share < options_.min_share) {
+    if (rivals > 0 && share < kLeastChanceShare) {
       result.unobserved.clear();
       result.reason = fmt::format(
           "at best {:.0f} % of the smaller set coincides with the other, and {} different poses reach as "
@@ -207,8 +217,7 @@ class SegmentRegistration {
       return;
     }
     if (result.unobserved.empty()) {
-      result.unobserved =
-          loose_freedoms(covariance_of(best.pose), options_.max_sigma_m, options_.max_sigma_deg);
+      result.unobserved = loose_freedoms(covariance_of(best.pose), kLooseM, kLooseDeg);
     }
     if (!result.unobserved.empty()) {
       result.outcome = Outcome::under_constrained;
@@ -223,7 +232,7 @@ class SegmentRegistration {
 
   const std::vector<Segment>& moved_;
   const std::vector<Segment>& fixed_;
-  const SegmentRegisterOptions& options_;
+  Gravity gravity_;
   SegmentRefiner refiner_;
   std::vector<PoseCandidate> candidates_;
   std::vector<Judged> poses_;  // distinct, best first
@@ -274,27 +283,13 @@ void refuse_unusable(const std::vector<Segment>& segments, const char* which) {
 
 }  // namespace
 
-void SegmentRegisterOptions::check() const {
-  enumerate.check();
-  refine.check();
-  if (refined_poses < 1) throw_bad_option("refined_poses", refined_poses, "1 or more");
-  if (alternatives < 0) throw_bad_option("alternatives", alternatives, "0 or more");
-  if (!(min_common_m > 0)) throw_bad_option("min_common_m", min_common_m, "more than 0");
-  if (!(max_rival_share > 0 && max_rival_share < 1))
-    throw_bad_option("max_rival_share", max_rival_share, "within (0, 1)");
-  if (!(min_held_m > 0)) throw_bad_option("min_held_m", min_held_m, "more than 0");
-  if (!(max_sigma_m > 0)) throw_bad_option("max_sigma_m", max_sigma_m, "more than 0");
-  if (!(max_sigma_deg > 0)) throw_bad_option("max_sigma_deg", max_sigma_deg, "more than 0");
-}
-
-RegistrationResult register_segments(const SegmentSet& source, const SegmentSet& target,
-                                     const SegmentRegisterOptions& options, Monitor& monitor) {
-  options.check();
+RegistrationResult register_segments(const SegmentSet& source, const SegmentSet& target, Gravity gravity,
+                                     Monitor& monitor) {
   refuse_unusable(source.segments, "source");
   refuse_unusable(target.segments, "target");
   const bool swapped = total_length(source.segments) > total_length(target.segments);
   SegmentRegistration work(swapped ? target.segments : source.segments,
-                           swapped ? source.segments : target.segments, options);
+                           swapped ? source.segments : target.segments, gravity);
   RegistrationResult result;
   timed("candidates", result, monitor, [&] { work.find_candidates(); });
   timed("refinement", result, monitor, [&] { work.refine(); });
@@ -307,8 +302,7 @@ RegistrationResult register_segments(const SegmentSet& source, const SegmentSet&
   }
   result.best = hypothesis_of(work.poses().front(), swapped, source, target);
   result.sigma = result.best.sigma;
-  const std::size_t listed =
-      std::min(std::max(work.rivals(), kListedOthers), static_cast<std::size_t>(options.alternatives));
+  const std::size_t listed = std::min(std::max(work.rivals(), kListedOthers), kMostListed);
   result.rivals = std::min(work.rivals(), listed);
   for (std::size_t k = 1; k < work.poses().size() && k <= listed; ++k) {
     result.alternatives.push_back(hypothesis_of(work.poses()[k], swapped, source, target));

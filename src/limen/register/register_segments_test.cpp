@@ -90,10 +90,8 @@ TEST(RegisterSegments, ABoxTurnedByHalfIsTheSameBox) {
   std::vector<Segment> box;
   synthetic::add_box({0, 0, 0}, {5, 4, 3}, box);
   for (const Gravity gravity : {Gravity::automatic, Gravity::up, Gravity::unknown}) {
-    SegmentRegisterOptions options;
-    options.gravity = gravity;
     const RegistrationResult result =
-        register_segments({Vector3d::Zero(), box}, {Vector3d::Zero(), box}, options);
+        register_segments({Vector3d::Zero(), box}, {Vector3d::Zero(), box}, gravity);
     EXPECT_EQ(result.outcome, Outcome::ambiguous) << result.reason;
     std::size_t equal = 0;
     for (const Hypothesis& other : result.alternatives)
@@ -138,11 +136,9 @@ TEST(RegisterSegments, ParallelSegmentsAreUnderConstrained) {
     const Vector3d foot(random.uniform(0, 12), random.uniform(0, 9), 0.0);
     poles.push_back({foot, foot + Vector3d(0, 0, random.uniform(2, 3))});
   }
-  SegmentRegisterOptions options;
-  options.gravity = Gravity::up;
   const Rigid3 truth{synthetic::random_heading(random), Vector3d(3, 2, 1)};
   const RegistrationResult result = register_segments(
-      {Vector3d::Zero(), poles}, {Vector3d::Zero(), synthetic::moved(poles, truth)}, options);
+      {Vector3d::Zero(), poles}, {Vector3d::Zero(), synthetic::moved(poles, truth)}, Gravity::up);
   EXPECT_EQ(result.outcome, Outcome::under_constrained) << result.reason;
   ASSERT_EQ(result.unobserved.size(), 1U);
   EXPECT_FALSE(result.unobserved[0].rotation);
@@ -182,9 +178,6 @@ TEST(RegisterSegments, NothingAndNonsense) {
   SegmentSet bad;
   bad.segments.push_back({Vector3d::Zero(), Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())});
   EXPECT_THROW((void)register_segments(bad, bad), Error);
-  SegmentRegisterOptions options;
-  options.max_rival_share = 1.5;
-  EXPECT_THROW((void)register_segments(empty, empty, options), Error);
 }
 
 }  // namespace

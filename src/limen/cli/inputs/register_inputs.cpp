@@ -90,10 +90,8 @@ RegistrationReport register_segment_files(const std::string& source, const std::
   const SegmentSet from = read_segments(source);
   const SegmentSet to = read_segments(target);
   const std::chrono::duration<double> reading = std::chrono::steady_clock::now() - start;
-  SegmentRegisterOptions options;
-  options.gravity = gravity;
   RegistrationReport report;
-  report.result = register_segments(from, to, options, *session.monitor);
+  report.result = register_segments(from, to, gravity, *session.monitor);
   report.result.stages.insert(report.result.stages.begin(), {"reading", reading.count()});
   report.result.picture =
       std::make_shared<const RegistrationPicture>(RegistrationPicture{pictured(from), pictured(to)});

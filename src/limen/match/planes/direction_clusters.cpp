@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
-#include "limen/base/error.h"
 #include "limen/geometry/linear.h"
 
 namespace limen {
 namespace {
+
+constexpr double kMostUpTiltRad = radians(20.0);  // a cluster further from the vertical is no floor
+// Directions are independent when the smallest eigenvalue of the sum of c c^T exceeds this: two lines 14
+// degrees apart.
+constexpr double kIndependence = 0.03;
 
 /// Angle between two lines, [0, pi/2].
 double line_angle(const Vector3d& a, const Vector3d& b) {
@@ -68,11 +71,7 @@ class Clustering {
       smallest = angle;
       nearest = k;
     }
-    if (nearest == result_.clusters.size()) {
-      result_.unassigned.push_back(plane);
-    } else {
-      add(plane, nearest);
-    }
+    if (nearest < result_.clusters.size()) add(plane, nearest);
   }
 
   void add(int plane, std::size_t k) {
@@ -91,13 +90,7 @@ class Clustering {
     for (const DirectionCluster& cluster : result_.clusters)
       directions += cluster.direction * cluster.direction.transpose();
     const Spectrum3 spectrum = spectrum_of(directions);
-    for (int i = 0; i < 3; ++i) {
-      if (spectrum.values[i] > options_.min_independence) {
-        ++result_.independent;
-      } else {
-        result_.open.emplace_back(spectrum.vectors.col(i));
-      }
-    }
+    result_.independent = static_cast<int>((spectrum.values.array() > kIndependence).count());
   }
 
   const std::vector<Plane>& planes_;
@@ -109,9 +102,8 @@ class Clustering {
 };
 
 /// Steps 9 and 10: the cluster nearest to the vertical.
-int horizontal_cluster(const std::vector<DirectionCluster>& clusters, const Vector3d& up,
-                       double max_tilt_rad) {
-  double smallest = max_tilt_rad;
+int horizontal_cluster(const std::vector<DirectionCluster>& clusters, const Vector3d& up) {
+  double smallest = kMostUpTiltRad;
   int best = -1;
   for (std::size_t k = 0; k < clusters.size(); ++k) {
     const double tilt = line_angle(clusters[k].direction, up);
@@ -122,32 +114,13 @@ int horizontal_cluster(const std::vector<DirectionCluster>& clusters, const Vect
   return best;
 }
 
-bool open_right_angle(double angle) {
-  return angle > 0.0 && angle < 0.5 * std::numbers::pi;
-}
-
 }  // namespace
-
-void DirectionClusterOptions::check() const {
-  if (!open_right_angle(max_angle_rad)) throw_bad_option("max_angle_rad", max_angle_rad, "in (0, pi/2)");
-  if (max_clusters < 0) throw_bad_option("max_clusters", max_clusters, "at least 0");
-  if (!open_right_angle(max_up_tilt_rad))
-    throw_bad_option("max_up_tilt_rad", max_up_tilt_rad, "in (0, pi/2)");
-  if (!(min_independence > 0.0 && min_independence < 1.0)) {
-    throw_bad_option("min_independence", min_independence, "in (0, 1)");
-  }
-}
 
 DirectionClusters cluster_directions(const std::vector<Plane>& planes, const std::vector<double>& weights,
                                      const std::optional<Vector3d>& up,
                                      const DirectionClusterOptions& options) {
-  options.check();
-  if (planes.size() != weights.size()) {
-    throw Error("planes and weights differ in number", "direction clusters",
-                "give one weight for each plane");
-  }
   DirectionClusters found = Clustering(planes, weights, options).run();
-  if (up) found.horizontal = horizontal_cluster(found.clusters, *up, options.max_up_tilt_rad);
+  if (up) found.horizontal = horizontal_cluster(found.clusters, *up);
   return found;
 }
 
@@ -169,20 +142,17 @@ DirectionClusters cluster_directions(const std::vector<Segment>& segments, const
   std::vector<Plane> directions;
   std::vector<double> weights;
   std::vector<int> used;
-  std::vector<int> too_short;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const double length = segments[i].length();
-    (length > kNoLengthM ? used : too_short).push_back(static_cast<int>(i));
     if (!(length > kNoLengthM)) continue;
+    used.push_back(static_cast<int>(i));
     directions.push_back({segments[i].direction(), 0.0});
     weights.push_back(length);
   }
   DirectionClusters found = cluster_directions(directions, weights, up, options);
-  const auto back = [&used](int& index) { index = used[static_cast<std::size_t>(index)]; };
-  for (DirectionCluster& cluster : found.clusters)
-    std::for_each(cluster.planes.begin(), cluster.planes.end(), back);
-  std::for_each(found.unassigned.begin(), found.unassigned.end(), back);
-  found.unassigned.insert(found.unassigned.end(), too_short.begin(), too_short.end());
+  for (DirectionCluster& cluster : found.clusters) {
+    for (int& index : cluster.planes) index = used[static_cast<std::size_t>(index)];
+  }
   return found;
 }
 

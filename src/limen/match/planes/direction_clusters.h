@@ -17,8 +17,8 @@
 //   throughout;
 // - the weighted centroid of normals of either sign is meaningless: a cluster's direction is the main
 //   eigenvector of the sum of w n n^T;
-// - the printed algorithm takes for granted that three independent directions exist: `independent` and `open`
-//   say what is missing;
+// - the printed algorithm takes for granted that three independent directions exist: `independent`
+//   says whether they do;
 // - any number of directions, for buildings with oblique wings: a smaller eps and max_clusters = 0.
 
 namespace limen {
@@ -27,13 +27,7 @@ struct DirectionClusterOptions {
   /// eps of algorithm 1, in (0, pi/2): 45 degrees gives the published three directions; about 10 degrees
   /// distinguishes oblique wings.
   double max_angle_rad = radians(45.0);
-  int max_clusters = 3;                    ///< 0: as many as there are, >= 0
-  double max_up_tilt_rad = radians(20.0);  ///< a cluster further from the vertical is no floor, in (0, pi/2)
-  /// Directions count as independent when the smallest eigenvalue of the sum of c c^T exceeds this, in (0,
-  /// 1); 0.03 is reached by two lines 14 degrees apart.
-  double min_independence = 0.03;
-
-  void check() const;
+  int max_clusters = 3;  ///< 0: as many as there are, >= 0
 };
 
 /// Planes whose normals are about parallel or opposed.
@@ -46,9 +40,7 @@ struct DirectionCluster {
 struct DirectionClusters {
   std::vector<DirectionCluster> clusters;  ///< in the order of their seeds, heaviest seed first
   int horizontal = -1;                     ///< the cluster of floors and ceilings; -1: none, or no gravity
-  std::vector<int> unassigned;             ///< planes further than eps from every direction
   int independent = 0;                     ///< rank of the directions: 0 to 3
-  std::vector<Vector3d> open;              ///< unit directions orthogonal to all clusters: shifts not held
 };
 
 /// `weights`: one per plane (inliers, or area), >= 0. `up`: unit vector against gravity where it is known.
@@ -60,7 +52,7 @@ DirectionClusters cluster_directions(const std::vector<PlanarPolygon>& polygons,
                                      const std::optional<Vector3d>& up,
                                      const DirectionClusterOptions& options = {});
 /// The same for the directions of segments, weighted by their lengths (2023, section IV-B); `planes` of the
-/// result are indices of segments. Segments shorter than a micrometre count nowhere and stay unassigned.
+/// result are indices of segments. Segments shorter than a micrometre count nowhere.
 DirectionClusters cluster_directions(const std::vector<Segment>& segments, const std::optional<Vector3d>& up,
                                      const DirectionClusterOptions& options = {});
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/match/planes/direction_clusters.h"
 #include "limen/match/segments/parallel_rotations.h"
@@ -16,6 +15,12 @@
 namespace limen {
 namespace {
 
+constexpr double kParallelDeg = 5.0;       // segments that differ by less are parallel
+constexpr double kSegmentReachM = 0.15;    // d of (8): pieces farther apart do not match
+constexpr std::size_t kMostSources = 400;  // longest segments of the smaller set that vote
+constexpr std::size_t kMostSegmentPoses = 2000;
+constexpr double kSamePoseDeg = 2.0;  // poses nearer than both bounds are one
+constexpr double kSameSegmentShiftM = 0.15;
 constexpr std::size_t kMostTargets = 12000;  // longest segments of the larger set that are voted for
 constexpr double kMinDirectionShare = 0.02;  // of the length: fewer segments make no direction
 constexpr int kDirections = 6;               // heaviest of each set
@@ -28,9 +33,9 @@ constexpr std::size_t kLeastSecondLook = 60;
 constexpr int kSegmentFitRounds = 2;
 
 /// Directions of a set, heaviest first.
-std::vector<AxisDirection> directions_of(const std::vector<Segment>& segments, double direction_deg) {
+std::vector<AxisDirection> directions_of(const std::vector<Segment>& segments) {
   DirectionClusterOptions options;
-  options.max_angle_rad = radians(direction_deg);
+  options.max_angle_rad = radians(kParallelDeg);
   options.max_clusters = 0;
   const DirectionClusters found = cluster_directions(segments, std::nullopt, options);
   std::vector<AxisDirection> directions;
@@ -48,9 +53,9 @@ std::vector<AxisDirection> directions_of(const std::vector<Segment>& segments, d
 }
 
 /// Weight of (8) for a piece: its length where it lies on the other set, nothing beyond the reach.
-double gain(const SegmentSample& piece, const SegmentHit& hit, double reach_m) {
+double gain(const SegmentSample& piece, const SegmentHit& hit) {
   if (hit.segment < 0) return 0.0;
-  const double share = hit.distance_m / reach_m;
+  const double share = hit.distance_m / kSegmentReachM;
   return piece.length_m * (1.0 - share * share);
 }
 
@@ -60,12 +65,12 @@ class SegmentEnumerator {
   SegmentEnumerator(const std::vector<Segment>& source, const std::vector<Segment>& target,
                     const SegmentPoseOptions& options)
       : options_(options),
-        source_(source, static_cast<std::size_t>(options.max_segments)),
+        source_(source, kMostSources),
         target_(target, kMostTargets),
-        source_axes_(directions_of(source, options.direction_deg)),
-        target_axes_(directions_of(target, options.direction_deg)),
+        source_axes_(directions_of(source)),
+        target_axes_(directions_of(target)),
         target_segments_(target),
-        lookup_(target, options.max_distance_m, radians(2.0 * options.direction_deg)) {
+        lookup_(target, kSegmentReachM, radians(2.0 * kParallelDeg)) {
     const double step = std::max(kFinestPieceM, source_.total_length_m() / static_cast<double>(kPieces));
     std::vector<Segment> used;
     for (std::size_t i = 0; i < source_.size(); ++i) {
@@ -93,8 +98,8 @@ class SegmentEnumerator {
     RotationOptions rotation_options;
     rotation_options.gravity_known = options_.gravity_known;
     rotation_options.gravity_tolerance_deg = options_.gravity_tolerance_deg;
-    rotation_options.direction_deg = options_.direction_deg;
-    rotation_options.same_rotation_deg = options_.same_rotation_deg;
+    rotation_options.direction_deg = kParallelDeg;
+    rotation_options.same_rotation_deg = kSamePoseDeg;
     std::vector<Matrix3d> rotations = enumerate_rotations(source_axes_, target_axes_, rotation_options);
     if (rotations.empty()) rotations = turns_of_parallels(rotation_options);
     std::vector<double> aligned;
@@ -121,7 +126,7 @@ class SegmentEnumerator {
 
   /// Length of the source whose directions are directions of the target too.
   [[nodiscard]] double aligned_length(const Matrix3d& rotation) const {
-    const double near = std::cos(radians(options_.direction_deg));
+    const double near = std::cos(radians(kParallelDeg));
     double sum = 0.0;
     for (const AxisDirection& a : source_axes_) {
       const Vector3d turned = rotation * a.direction;
@@ -134,11 +139,7 @@ class SegmentEnumerator {
   }
 
   [[nodiscard]] std::vector<PoseCandidate> poses_of(const Matrix3d& rotation) const {
-    VoteOptions voting;
-    voting.direction_deg = options_.direction_deg;
-    voting.cell_m = options_.cell_m;
-    voting.max_peaks = static_cast<std::size_t>(options_.max_peaks);
-    const std::vector<Vector3d> shifts = vote_shifts(source_, target_, rotation, target_axes_, voting);
+    const std::vector<Vector3d> shifts = vote_shifts(source_, target_, rotation, target_axes_, kParallelDeg);
     std::vector<SegmentSample> turned = pieces_;
     for (SegmentSample& piece : turned) {
       piece.at = rotation * piece.at;
@@ -159,7 +160,7 @@ class SegmentEnumerator {
     double sum = 0.0;
     for (std::size_t i = 0; i < turned.size(); i += stride) {
       const SegmentHit hit = lookup_.nearest(turned[i].at + shift, turned[i].direction);
-      sum += gain(turned[i], hit, options_.max_distance_m);
+      sum += gain(turned[i], hit);
     }
     return sum;
   }
@@ -171,14 +172,14 @@ class SegmentEnumerator {
       std::vector<LinePair> pairs;
       for (const SegmentSample& piece : turned) {
         const SegmentHit hit = lookup_.nearest(piece.at + shift, piece.direction);
-        const double weight = gain(piece, hit, options_.max_distance_m);
+        const double weight = gain(piece, hit);
         if (!(weight > 0.0)) continue;
         const Segment& met = target_segments_[static_cast<std::size_t>(hit.segment)];
         pairs.push_back({{piece.at, piece.direction}, {met.a, met.direction()}, weight, std::nullopt});
       }
       if (pairs.empty()) break;
       const Vector3d moved = translation_from_lines(Matrix3d::Identity(), pairs, shift).translation;
-      if ((moved - shift).norm() > options_.max_distance_m) break;
+      if ((moved - shift).norm() > kSegmentReachM) break;
       shift = moved;
     }
     pose.precedence = support(turned, shift, 1);
@@ -195,14 +196,14 @@ class SegmentEnumerator {
     std::vector<PoseCandidate> kept;
     std::vector<Vector3d> middles;
     for (const PoseCandidate& pose : poses) {
-      if (kept.size() == static_cast<std::size_t>(options_.max_poses)) break;
+      if (kept.size() == kMostSegmentPoses) break;
       const Vector3d middle = pose.target_from_source * middle_;
       bool known = false;
       for (std::size_t k = 0; k < kept.size() && !known; ++k) {
-        if ((middles[k] - middle).squaredNorm() >= options_.same_shift_m * options_.same_shift_m) continue;
+        if ((middles[k] - middle).squaredNorm() >= kSameSegmentShiftM * kSameSegmentShiftM) continue;
         const Matrix3d turn =
             kept[k].target_from_source.rotation.transpose() * pose.target_from_source.rotation;
-        known = rotation_angle(turn) < radians(options_.same_rotation_deg);
+        known = rotation_angle(turn) < radians(kSamePoseDeg);
       }
       if (known) continue;
       kept.push_back(pose);
@@ -224,24 +225,9 @@ class SegmentEnumerator {
 
 }  // namespace
 
-void SegmentPoseOptions::check() const {
-  if (!(gravity_tolerance_deg > 0))
-    throw_bad_option("gravity_tolerance_deg", gravity_tolerance_deg, "more than 0");
-  if (!(direction_deg > 0 && direction_deg < 40))
-    throw_bad_option("direction_deg", direction_deg, "within (0, 40)");
-  if (!(max_distance_m > 0)) throw_bad_option("max_distance_m", max_distance_m, "more than 0");
-  if (!(cell_m > 0)) throw_bad_option("cell_m", cell_m, "more than 0");
-  if (max_segments < 1) throw_bad_option("max_segments", max_segments, "1 or more");
-  if (max_peaks < 1) throw_bad_option("max_peaks", max_peaks, "1 or more");
-  if (max_poses < 1) throw_bad_option("max_poses", max_poses, "1 or more");
-  if (!(same_rotation_deg > 0)) throw_bad_option("same_rotation_deg", same_rotation_deg, "more than 0");
-  if (!(same_shift_m > 0)) throw_bad_option("same_shift_m", same_shift_m, "more than 0");
-}
-
 std::vector<PoseCandidate> enumerate_segment_poses(const std::vector<Segment>& source,
                                                    const std::vector<Segment>& target,
                                                    const SegmentPoseOptions& options) {
-  options.check();
   if (source.empty() || target.empty()) return {};
   if (total_length(source) <= total_length(target)) return SegmentEnumerator(source, target, options).run();
   std::vector<PoseCandidate> poses = SegmentEnumerator(target, source, options).run();

@@ -21,7 +21,7 @@
 //   in one plane (the first pair) is completed by the component that most pairs of the other directions want
 //   (the second pair). The printed tests on a double pair - |d_v . d_h| and the distance of the two lines
 //   agree in both sets - hold for all pairs that vote for one shift;
-// - (8) is taken in pieces: each piece of the smaller set counts its length times 1 - (d / max_distance_m)^2,
+// - (8) is taken in pieces: each piece of the smaller set counts its length times 1 - (d / 0.15 m)^2,
 //   d its distance to the nearest segment of the other set in its direction.
 
 namespace limen {
@@ -29,16 +29,6 @@ namespace limen {
 struct SegmentPoseOptions {
   bool gravity_known = true;           ///< both z axes point up: only turns about the vertical are tried
   double gravity_tolerance_deg = 4.0;  ///< by how much a level set may be off
-  double direction_deg = 5.0;          ///< segments that differ by less are parallel
-  double max_distance_m = 0.15;        ///< d of (8): pieces farther apart do not match
-  double cell_m = 0.06;                ///< of the planes of shifts; wider for sets beyond 90 m
-  int max_segments = 400;              ///< longest segments of the smaller set that vote
-  int max_peaks = 400;                 ///< places of each plane of shifts that are completed
-  int max_poses = 2000;                ///< poses returned
-  double same_rotation_deg = 2.0;      ///< poses nearer than both bounds are one
-  double same_shift_m = 0.15;
-
-  void check() const;
 };
 
 /// Poses that lay segments of the source on segments of the target, for any starting pose. Best first, no two

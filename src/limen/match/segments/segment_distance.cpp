@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <tuple>
-
-#include "limen/base/error.h"
 
 namespace limen {
 namespace {
@@ -112,19 +109,8 @@ void take(std::vector<std::pair<double, double>>& taken, double from, double to)
 
 }  // namespace
 
-void SegmentDistanceOptions::check() const {
-  if (!(max_distance_m > 0.0)) throw_bad_option("max_distance_m", max_distance_m, "> 0");
-  if (!(max_angle_rad > 0.0 && max_angle_rad < 0.5 * std::numbers::pi)) {
-    throw_bad_option("max_angle_rad", max_angle_rad, "in (0, pi/2)");
-  }
-  if (wall_normal && !(std::abs(wall_normal->norm() - 1.0) < 1e-6)) {
-    throw_bad_option("wall_normal", wall_normal->norm(), "a unit vector");
-  }
-}
-
 std::optional<SegmentOverlap> overlap_of(const Segment& first, const Segment& second,
                                          const SegmentDistanceOptions& options) {
-  options.check();
   const MeasuredSegment a = measured(options.wall_normal, first);
   const MeasuredSegment b = measured(options.wall_normal, second);
   if (a.length <= kNoLengthM || b.length <= kNoLengthM) return std::nullopt;
@@ -134,7 +120,6 @@ std::optional<SegmentOverlap> overlap_of(const Segment& first, const Segment& se
 SegmentSetMeasure::SegmentSetMeasure(const std::vector<Segment>& target,
                                      const SegmentDistanceOptions& options)
     : options_(options) {
-  options_.check();
   Vector3d low = Vector3d::Constant(1e300);
   Vector3d high = Vector3d::Constant(-1e300);
   for (const Segment& segment : target) {

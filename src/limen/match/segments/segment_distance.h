@@ -53,8 +53,6 @@ struct SegmentDistanceOptions {
   SegmentWeight weight = SegmentWeight::length;
   bool whole_segments = false;  ///< the four end points are those of the whole segments, as printed
   std::optional<Vector3d> wall_normal = {};  ///< unit: taken out of all distances and lengths
-
-  void check() const;
 };
 
 /// What two segments have in common. Places along a segment are metres from its `a`.
@@ -67,7 +65,7 @@ struct SegmentOverlap {
 };
 
 /// The overlap of two segments along their bisector; none where they lie beside each other or differ by more
-/// than the angle. The distance is not limited. Throws Error for bad options.
+/// than the angle. The distance is not limited.
 std::optional<SegmentOverlap> overlap_of(const Segment& first, const Segment& second,
                                          const SegmentDistanceOptions& options = {});
 
@@ -93,7 +91,7 @@ struct SetDistance {
 /// A set of segments made ready to be compared with many others, or with one in many poses.
 class SegmentSetMeasure {
  public:
-  /// Throws Error for bad options. Segments shorter than a micrometre (the wall normal taken out) are left
+  /// Segments shorter than a micrometre (the wall normal taken out) are left
   /// out.
   SegmentSetMeasure(const std::vector<Segment>& target, const SegmentDistanceOptions& options);
 

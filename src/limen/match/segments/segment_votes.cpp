@@ -15,6 +15,9 @@
 namespace limen {
 namespace {
 
+constexpr double kVoteCellM = 0.06;             // of the planes of shifts; wider for sets beyond 90 m
+constexpr std::size_t kMostPeaks = 400;         // places of each plane of shifts that are completed
+constexpr std::size_t kMostShifts = 600;        // returned
 constexpr double kMostVoteCells = 1500.0;       // along one component of the shift
 constexpr double kLongestVoteM = 3.0;           // a long edge is one coincidence, however long
 constexpr double kMaxCosine = 0.9;              // two directions nearer to each other do not span a plane
@@ -61,8 +64,8 @@ struct Family {
 class Voting {
  public:
   Voting(const VotingSegments& source, const VotingSegments& target, const Matrix3d& rotation,
-         const VoteOptions& options)
-      : source_(source), target_(target), rotation_(rotation), options_(options) {}
+         double direction_deg)
+      : source_(source), target_(target), rotation_(rotation), near_(std::cos(radians(direction_deg))) {}
 
   [[nodiscard]] std::vector<Vector3d> run(const std::vector<AxisDirection>& directions) {
     choose_basis(directions);
@@ -79,19 +82,18 @@ class Voting {
 
  private:
   [[nodiscard]] Family family_of(const Vector3d& direction) const {
-    const double near = std::cos(radians(options_.direction_deg));
     Family family;
     family.direction = direction;
     double from = 0.0;
     double to = 0.0;
     const Vector3d in_source = rotation_.transpose() * direction;
     for (std::size_t i = 0; i < source_.size(); ++i) {
-      if (std::abs(source_.directions[i].dot(in_source)) < near) continue;
+      if (std::abs(source_.directions[i].dot(in_source)) < near_) continue;
       family.source.push_back(i);
       from += source_.lengths_m[i];
     }
     for (std::size_t j = 0; j < target_.size(); ++j) {
-      if (std::abs(target_.directions[j].dot(direction)) < near) continue;
+      if (std::abs(target_.directions[j].dot(direction)) < near_) continue;
       family.target.push_back(j);
       to += target_.lengths_m[j];
     }
@@ -144,7 +146,7 @@ class Voting {
     }
     middle_shift_ = 0.5 * (low[1] + high[1] - low[0] - high[0]);
     const Vector3d range = high[1] - low[0] - (low[1] - high[0]);
-    cell_m_ = std::max(options_.cell_m, range.maxCoeff() / kMostVoteCells);
+    cell_m_ = std::max(kVoteCellM, range.maxCoeff() / kMostVoteCells);
     low_shift_ = (low[1] - high[0]).array() - cell_m_;
     for (std::size_t k = 0; k < 3; ++k)
       count_[k] = static_cast<std::size_t>(range[static_cast<Eigen::Index>(k)] / cell_m_) + 4;
@@ -201,7 +203,7 @@ class Voting {
     }
     std::stable_sort(found.begin(), found.end(),
                      [](const Peak& a, const Peak& b) { return a.votes > b.votes; });
-    if (found.size() > options_.max_peaks) found.resize(options_.max_peaks);
+    if (found.size() > kMostPeaks) found.resize(kMostPeaks);
     return found;
   }
 
@@ -244,7 +246,7 @@ class Voting {
     std::unordered_set<std::size_t> taken;
     std::vector<Vector3d> shifts;
     for (const Cell& cell : found) {
-      if (shifts.size() == options_.max_shifts) break;
+      if (shifts.size() == kMostShifts) break;
       if (taken.count(key(cell.at[0], cell.at[1], cell.at[2])) > 0) continue;
       for (std::size_t n = 0; n < 27; ++n) {
         taken.insert(key(cell.at[0] + n % 3 - 1, cell.at[1] + n / 3 % 3 - 1, cell.at[2] + n / 9 - 1));
@@ -264,7 +266,7 @@ class Voting {
       shift[1] += cell_m_ * static_cast<double>(peak.u);
       shift[2] += cell_m_ * static_cast<double>(peak.v);
       shifts.push_back(basis_ * shift);
-      if (shifts.size() == options_.max_shifts) break;
+      if (shifts.size() == kMostShifts) break;
     }
     return shifts;
   }
@@ -272,7 +274,7 @@ class Voting {
   const VotingSegments& source_;
   const VotingSegments& target_;
   const Matrix3d& rotation_;
-  const VoteOptions& options_;
+  double near_;  // cosine of two directions that are one
   std::vector<Family> families_;
   Matrix3d basis_ = Matrix3d::Identity();
   std::array<std::vector<Placed>, 3> placed_source_;
@@ -309,8 +311,8 @@ double VotingSegments::total_length_m() const {
 
 std::vector<Vector3d> vote_shifts(const VotingSegments& source, const VotingSegments& target,
                                   const Matrix3d& rotation, const std::vector<AxisDirection>& directions,
-                                  const VoteOptions& options) {
-  return Voting(source, target, rotation, options).run(directions);
+                                  double direction_deg) {
+  return Voting(source, target, rotation, direction_deg).run(directions);
 }
 
 }  // namespace limen

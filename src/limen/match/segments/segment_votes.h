@@ -24,18 +24,11 @@ struct VotingSegments {
   [[nodiscard]] double total_length_m() const;
 };
 
-struct VoteOptions {
-  double direction_deg = 5.0;
-  double cell_m = 0.06;
-  std::size_t max_peaks = 400;
-  std::size_t max_shifts = 600;  ///< returned
-};
-
 /// The shifts (of target_from_source) that pairs of parallel segments vote for under one rotation (2023,
-/// IV-C, see enumerate_segment_poses.h), most votes first. `directions`: of the target. Empty where no
-/// direction is common.
+/// IV-C, see enumerate_segment_poses.h), most votes first. `directions`: of the target; what differs from one
+/// by less than `direction_deg` has it. Empty where no direction is common.
 std::vector<Vector3d> vote_shifts(const VotingSegments& source, const VotingSegments& target,
                                   const Matrix3d& rotation, const std::vector<AxisDirection>& directions,
-                                  const VoteOptions& options);
+                                  double direction_deg);
 
 }  // namespace limen

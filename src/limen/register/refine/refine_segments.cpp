@@ -7,7 +7,6 @@
 #include <set>
 
 #include "limen/base/angles.h"
-#include "limen/base/error.h"
 #include "limen/geometry/linear.h"
 
 namespace limen {
@@ -15,6 +14,8 @@ namespace {
 
 using Rows = Eigen::Matrix<double, 3, 6>;
 
+constexpr double kFirstSegmentGateM = 0.15;  // segments nearer than this are matched in the first round
+constexpr int kSegmentRounds = 10;
 constexpr double kPieceM = 0.2;
 constexpr double kPieces = 1500.0;       // about, at most
 constexpr double kFullEvidenceM = 1.5;   // a longer segment is no more of a coincidence
@@ -42,21 +43,9 @@ double tukey(double residual, double gate) {
 
 }  // namespace
 
-void RefineSegmentsOptions::check() const {
-  if (!(last_gate_m > 0)) throw_bad_option("last_gate_m", last_gate_m, "more than 0");
-  if (!(first_gate_m >= last_gate_m)) throw_bad_option("first_gate_m", first_gate_m, "at least last_gate_m");
-  if (!(max_angle_deg > 0 && max_angle_deg < 90))
-    throw_bad_option("max_angle_deg", max_angle_deg, "within (0, 90)");
-  if (rounds < 1) throw_bad_option("rounds", rounds, "1 or more");
-}
-
-SegmentRefiner::SegmentRefiner(const std::vector<Segment>& moved, const std::vector<Segment>& fixed,
-                               const RefineSegmentsOptions& options)
-    : fixed_(fixed), options_(options), lookup_(fixed, options.first_gate_m, radians(options.max_angle_deg)) {
-  options_.check();
-  double total = 0.0;
-  for (const Segment& segment : moved) total += segment.length();
-  pieces_ = sample_segments(moved, std::max(kPieceM, total / kPieces));
+SegmentRefiner::SegmentRefiner(const std::vector<Segment>& moved, const std::vector<Segment>& fixed)
+    : fixed_(fixed), lookup_(fixed, kFirstSegmentGateM, radians(kMatchedSegmentsDeg)) {
+  pieces_ = sample_segments(moved, std::max(kPieceM, total_length(moved) / kPieces));
   for (const SegmentSample& piece : pieces_) {
     const double length = moved[static_cast<std::size_t>(piece.segment)].length();
     evidence_m_.push_back(piece.length_m * std::min(1.0, kFullEvidenceM / length));
@@ -154,7 +143,7 @@ void SegmentRefiner::count(const std::vector<Match>& matches, SegmentFit& fit) c
   std::set<int> segments;
   for (const Match& m : matches) {
     const SegmentSample& piece = pieces_[m.piece];
-    const double share = m.residual.norm() / options_.last_gate_m;
+    const double share = m.residual.norm() / kLastSegmentGateM;
     fit.met_m[m.piece] = evidence_m_[m.piece] * std::max(0.0, 1.0 - share * share);
     fit.evidence_m += fit.met_m[m.piece];
     fit.matched_m += piece.length_m;
@@ -168,17 +157,17 @@ void SegmentRefiner::count(const std::vector<Match>& matches, SegmentFit& fit) c
 SegmentFit SegmentRefiner::refine(const Rigid3& fixed_from_moved) const {
   SegmentFit fit;
   fit.pose.target_from_source = fixed_from_moved;
-  for (int round = 0; round < options_.rounds; ++round) {
-    const double share = static_cast<double>(round) / std::max(1, options_.rounds - 1);
-    const double gate = options_.first_gate_m * std::pow(options_.last_gate_m / options_.first_gate_m, share);
+  for (int round = 0; round < kSegmentRounds; ++round) {
+    const double share = static_cast<double>(round) / (kSegmentRounds - 1);
+    const double gate = kFirstSegmentGateM * std::pow(kLastSegmentGateM / kFirstSegmentGateM, share);
     const std::vector<Match> matches = match(fit.pose.target_from_source, gate);
     if (matches.size() < 3) break;
     adjust(matches, gate, fit.pose.target_from_source);
   }
-  const std::vector<Match> matches = match(fit.pose.target_from_source, options_.last_gate_m);
+  const std::vector<Match> matches = match(fit.pose.target_from_source, kLastSegmentGateM);
   fit.met_m.assign(pieces_.size(), 0.0);
   if (matches.empty()) return fit;
-  summarise(matches, options_.last_gate_m, fit);
+  summarise(matches, kLastSegmentGateM, fit);
   count(matches, fit);
   return fit;
 }

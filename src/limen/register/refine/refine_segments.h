@@ -10,14 +10,10 @@
 
 namespace limen {
 
-struct RefineSegmentsOptions {
-  double first_gate_m = 0.15;  ///< segments nearer than this are matched in the first round
-  double last_gate_m = 0.05;   ///< and in the last: several times the noise of a segment's ends
-  double max_angle_deg = 10.0;
-  int rounds = 10;
-
-  void check() const;
-};
+/// Segments nearer than this, of about one direction, are matched in the last round: several times the noise
+/// of a segment's ends.
+inline constexpr double kLastSegmentGateM = 0.05;
+inline constexpr double kMatchedSegmentsDeg = 10.0;
 
 /// How two sets of segments lie on each other under one pose.
 struct SegmentFit {
@@ -36,9 +32,8 @@ struct SegmentFit {
 /// evidence, however long.
 class SegmentRefiner {
  public:
-  /// The sets must outlive the refiner. Throws Error for bad options.
-  SegmentRefiner(const std::vector<Segment>& moved, const std::vector<Segment>& fixed,
-                 const RefineSegmentsOptions& options);
+  /// The sets must outlive the refiner.
+  SegmentRefiner(const std::vector<Segment>& moved, const std::vector<Segment>& fixed);
 
   /// The pose near `start` and what it matches.
   [[nodiscard]] SegmentFit refine(const Rigid3& fixed_from_moved) const;
@@ -62,7 +57,6 @@ class SegmentRefiner {
   void count(const std::vector<Match>& matches, SegmentFit& fit) const;
 
   const std::vector<Segment>& fixed_;
-  RefineSegmentsOptions options_;
   SegmentLookup lookup_;
   std::vector<SegmentSample> pieces_;
   std::vector<double> evidence_m_;  // of each piece
