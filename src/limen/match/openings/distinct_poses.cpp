@@ -10,11 +10,10 @@
 
 namespace limen {
 
-std::vector<OpeningPose> distinct_poses(std::vector<OpeningPose> poses, const Vector3d& middle,
-                                        const OpeningPoseOptions& options) {
+std::vector<OpeningPose> distinct_poses(std::vector<OpeningPose> poses, const Vector3d& middle) {
   std::stable_sort(poses.begin(), poses.end(),
                    [](const OpeningPose& a, const OpeningPose& b) { return a.distance < b.distance; });
-  const double cell = options.same_shift_m + options.same_thickness_m;
+  constexpr double kCellM = kSameInWallM + kSameAcrossWallM;
   std::vector<OpeningPose> kept;
   std::vector<Vector3d> middles;
   // Of kept, in cells wider than the distance of two poses that look alike.
@@ -22,15 +21,15 @@ std::vector<OpeningPose> distinct_poses(std::vector<OpeningPose> poses, const Ve
   const auto look_alikes = [&](const OpeningPose& pose, const Vector3d& moved, std::size_t other) {
     const Vector3d off = moved - middles[other];
     const double across = off.dot(pose.wall_normal);
-    if (std::abs(across) >= options.same_thickness_m) return false;
-    if ((off - across * pose.wall_normal).norm() >= options.same_shift_m) return false;
+    if (std::abs(across) >= kSameAcrossWallM) return false;
+    if ((off - across * pose.wall_normal).norm() >= kSameInWallM) return false;
     const Matrix3d turn =
         kept[other].target_from_source.rotation.transpose() * pose.target_from_source.rotation;
-    return rotation_angle(turn) < radians(options.same_rotation_deg);
+    return rotation_angle(turn) < radians(1.0);
   };
   for (OpeningPose& pose : poses) {
     const Vector3d moved = pose.target_from_source * middle;
-    const long place = std::lround(std::floor(moved.x() / cell));
+    const long place = std::lround(std::floor(moved.x() / kCellM));
     bool known = false;
     for (long k = place - 1; k <= place + 1 && !known; ++k) {
       const auto near = by_x.find(k);

@@ -9,9 +9,8 @@
 namespace limen {
 
 /// The poses by their distance, lowest first, without those that are nearly a better one: turned by less than
-/// `same_rotation_deg`, and at `middle` (a point of the source) shifted by less than `same_shift_m` within
-/// the wall and `same_thickness_m` across it.
-std::vector<OpeningPose> distinct_poses(std::vector<OpeningPose> poses, const Vector3d& middle,
-                                        const OpeningPoseOptions& options);
+/// a degree, and at `middle` (a point of the source) shifted by less than `kSameInWallM` within the wall and
+/// `kSameAcrossWallM` across it.
+std::vector<OpeningPose> distinct_poses(std::vector<OpeningPose> poses, const Vector3d& middle);
 
 }  // namespace limen

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "limen/base/angles.h"
-#include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/match/openings/opening_walls.h"
 #include "limen/match/planes/plane_shifts.h"
@@ -16,6 +15,9 @@
 namespace limen {
 namespace {
 
+constexpr double kSameAcrossM = 0.06;  // shifts nearer than this are one
+constexpr int kMostShiftsAcross = 6;   // along the normal, per opening pose
+constexpr std::size_t kMostHybridPoses = 1200;
 constexpr double kSamePoseM = 0.01;  // opening poses that differ along their normal only are one
 constexpr double kSamePoseRad = 0.002;
 constexpr double kMinRevealSigmaM = 0.003;
@@ -65,9 +67,7 @@ class HybridEnumerator {
         target_(target),
         options_(options),
         finder_(source, target, up_of(source, options.openings.gravity_known),
-                up_of(target, options.openings.gravity_known),
-                {options.plane_parallel_deg, options.min_normal_cosine, options.min_overlap_m2,
-                 PlaneShiftOptions{}.max_planes}) {}
+                up_of(target, options.openings.gravity_known)) {}
 
   /// All poses of one opening pose, the best held first.
   [[nodiscard]] std::vector<HybridPose> poses_of(const OpeningPose& opening) const {
@@ -81,7 +81,7 @@ class HybridEnumerator {
     std::vector<HybridPose> poses;
     const auto add = [&](const HybridPose& pose) {
       const bool known = std::any_of(poses.begin(), poses.end(), [&](const HybridPose& other) {
-        return std::abs(other.thickness_m - pose.thickness_m) < 0.5 * options_.offset_tolerance_m;
+        return std::abs(other.thickness_m - pose.thickness_m) < 0.5 * kSameAcrossM;
       });
       if (!known && possible(pose.thickness_m)) poses.push_back(pose);
     };
@@ -108,15 +108,15 @@ class HybridEnumerator {
   /// much.
   [[nodiscard]] std::vector<PlaneShift> shifts_near(const OpeningPose& opening, double low,
                                                     double high) const {
-    return finder_.along(opening.target_from_source, opening.wall_normal, low - options_.offset_tolerance_m,
-                         high + options_.offset_tolerance_m);
+    return finder_.along(opening.target_from_source, opening.wall_normal, low - kSameAcrossM,
+                         high + kSameAcrossM);
   }
 
   /// Overlap of the planes that agree with a shift.
   [[nodiscard]] double support_at(const std::vector<PlaneShift>& shifts, double shift_m) const {
     double sum = 0.0;
     for (const PlaneShift& shift : shifts) {
-      const double off = (shift.shift_m - shift_m) / options_.offset_tolerance_m;
+      const double off = (shift.shift_m - shift_m) / kSameAcrossM;
       sum += shift.overlap_m2 * std::max(0.0, 1.0 - off * off);
     }
     return sum;
@@ -129,7 +129,7 @@ class HybridEnumerator {
   [[nodiscard]] std::vector<HybridPose> held_by_planes(const OpeningPose& opening,
                                                        const std::vector<PlaneShift>& shifts) const {
     std::vector<HybridPose> poses;
-    for (const CommonShift& shift : common_shifts(shifts, options_.offset_tolerance_m, options_.max_shifts)) {
+    for (const CommonShift& shift : common_shifts(shifts, kSameAcrossM, kMostShiftsAcross)) {
       poses.push_back(at_thickness(opening, opening.thickness_m - shift.shift_m));
     }
     return poses;
@@ -209,20 +209,8 @@ HybridPoseOptions with_users_thickness(HybridPoseOptions options) {
 
 }  // namespace
 
-void HybridPoseOptions::check() const {
-  openings.check();
-  if (wall_thickness_m && !(*wall_thickness_m > 0.0)) {
-    throw_bad_option("wall_thickness_m", *wall_thickness_m, "> 0");
-  }
-  if (!(offset_tolerance_m > 0.0)) throw_bad_option("offset_tolerance_m", offset_tolerance_m, "> 0");
-  if (max_shifts < 1) throw_bad_option("max_shifts", max_shifts, ">= 1");
-  if (max_poses < 1) throw_bad_option("max_poses", max_poses, ">= 1");
-  PlaneShiftOptions{plane_parallel_deg, min_normal_cosine, min_overlap_m2, 1}.check();
-}
-
 std::vector<HybridPose> enumerate_hybrid_poses(const Features& source, const Features& target,
                                                const HybridPoseOptions& options) {
-  options.check();
   const HybridPoseOptions all = with_users_thickness(options);
   const HybridEnumerator enumerator(source, target, all);
   const std::vector<OpeningPose> openings =
@@ -238,7 +226,7 @@ std::vector<HybridPose> enumerate_hybrid_poses(const Features& source, const Fea
       (pose.opening.sides == WallSides::opposite ? opposite : same).push_back(pose);
     }
   }
-  return merged(opposite, same, static_cast<std::size_t>(options.max_poses));
+  return merged(opposite, same, kMostHybridPoses);
 }
 
 }  // namespace limen

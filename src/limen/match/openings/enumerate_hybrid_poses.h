@@ -24,15 +24,7 @@ namespace limen {
 
 struct HybridPoseOptions {
   OpeningPoseOptions openings;
-  std::optional<double> wall_thickness_m;  ///< given by the user: then no other assumption is made, > 0
-  double plane_parallel_deg = 6.0;         ///< planes that meet differ by no more
-  double min_normal_cosine = 0.5;    ///< planes more oblique to the wall do not hold the shift across it
-  double offset_tolerance_m = 0.06;  ///< shifts nearer than this are one
-  double min_overlap_m2 = 0.05;      ///< of the planes that propose a shift, bounding rectangles
-  int max_shifts = 6;                ///< along the normal, per opening pose
-  int max_poses = 1200;
-
-  void check() const;
+  std::optional<double> wall_thickness_m;  ///< given by the user: then no other assumption is made
 };
 
 /// A pose proposed by openings and planes, in the scans' local frames.
@@ -46,8 +38,7 @@ struct HybridPose {
 /// Poses from openings and planes. A pose is in the list by the better of its two places, by the distance
 /// of its openings and by the overlap of its planes, counted for each of the two cases of sides apart; equal
 /// places go by distance. Where the user gave a thickness, that shift comes first of its opening pose's. A
-/// pose whose normal nothing holds is listed with assumed thicknesses. Deterministic. Throws Error for bad
-/// options.
+/// pose whose normal nothing holds is listed with assumed thicknesses. Deterministic.
 std::vector<HybridPose> enumerate_hybrid_poses(const Features& source, const Features& target,
                                                const HybridPoseOptions& options = {});
 

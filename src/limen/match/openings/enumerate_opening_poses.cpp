@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "limen/base/angles.h"
-#include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/match/openings/distinct_poses.h"
 #include "limen/match/openings/opening_matcher.h"
@@ -115,7 +114,7 @@ class OpeningEnumerator {
   [[nodiscard]] OpeningShift voted(const std::vector<WallRectangle>& rectangles, std::size_t wall,
                                    const Vector2d& shift) const {
     OpeningShift result{shift, 0.0};
-    const double tolerance = options_.edge_tolerance_m + 2.0 * kEdgeNoiseM;
+    const double tolerance = kOpeningEdgesM + 2.0 * kEdgeNoiseM;
     for (const auto& [i, j] : matcher_.pairs_at(rectangles, wall, shift)) {
       const auto fit = matcher_.fit_of(rectangles[i], shift, matcher_.target()[wall].rectangles[j]);
       if (fit) result.vote += fit->length_m * std::max(0.1, 1.0 - fit->squares_m2 / (tolerance * tolerance));
@@ -137,9 +136,9 @@ class OpeningEnumerator {
                      [](const OpeningShift& x, const OpeningShift& y) { return x.vote > y.vote; });
     std::vector<OpeningShift> kept;
     for (const OpeningShift& shift : all) {
-      if (static_cast<int>(kept.size()) == options_.max_poses) break;
+      if (kept.size() == options_.max_poses) break;
       const bool known = std::any_of(kept.begin(), kept.end(), [&](const OpeningShift& other) {
-        return (other.shift - shift.shift).cwiseAbs().maxCoeff() < options_.same_shift_m;
+        return (other.shift - shift.shift).cwiseAbs().maxCoeff() < kSameInWallM;
       });
       if (!known) kept.push_back(shift);
     }
@@ -185,7 +184,7 @@ class OpeningEnumerator {
     for (const OpeningShift& one : found) {
       if (kept.size() == kCornerThicknesses) break;
       const bool known = std::any_of(kept.begin(), kept.end(), [&](const OpeningShift& other) {
-        return std::abs(other.shift.x() - one.shift.x()) < options_.same_thickness_m;
+        return std::abs(other.shift.x() - one.shift.x()) < kSameAcrossWallM;
       });
       if (!known) kept.push_back(one);
     }
@@ -193,7 +192,7 @@ class OpeningEnumerator {
   }
 
   [[nodiscard]] bool possible(double thickness) const {
-    if (sides_ == WallSides::same) return std::abs(thickness) <= options_.same_side_m;
+    if (sides_ == WallSides::same) return std::abs(thickness) <= kSameFaceM;
     return thickness >= options_.min_thickness_m && thickness <= options_.max_thickness_m;
   }
 
@@ -203,7 +202,7 @@ class OpeningEnumerator {
     std::vector<double> list;
     const auto propose = [&](double thickness) {
       const bool known = std::any_of(list.begin(), list.end(), [&](double other) {
-        return std::abs(other - thickness) < options_.same_thickness_m;
+        return std::abs(other - thickness) < kSameAcrossWallM;
       });
       if (!known && possible(thickness)) list.push_back(thickness);
     };
@@ -250,8 +249,8 @@ class OpeningEnumerator {
     std::vector<std::pair<std::size_t, std::size_t>> order;  // turn, place
     for (std::size_t i = 0; i < all.size(); ++i) order.emplace_back(turns[all[i].pair->source]++, i);
     std::sort(order.begin(), order.end());
-    if (order.size() > static_cast<std::size_t>(options_.max_poses)) {
-      order.resize(static_cast<std::size_t>(options_.max_poses));
+    if (order.size() > options_.max_poses) {
+      order.resize(options_.max_poses);
     }
     std::vector<OpeningCandidate> kept;
     for (const auto& [turn, place] : order) kept.push_back(std::move(all[place]));
@@ -338,42 +337,19 @@ const char* to_string(WallSides sides) {
   return sides == WallSides::opposite ? "opposite" : "same";
 }
 
-void OpeningPoseOptions::check() const {
-  const auto positive = [](const char* name, double value) {
-    if (!(value > 0.0)) throw_bad_option(name, value, "> 0");
-  };
-  positive("size_tolerance_m", size_tolerance_m);
-  positive("edge_tolerance_m", edge_tolerance_m);
-  positive("same_rotation_deg", same_rotation_deg);
-  positive("same_shift_m", same_shift_m);
-  positive("same_thickness_m", same_thickness_m);
-  positive("min_thickness_m", min_thickness_m);
-  positive("same_side_m", same_side_m);
-  if (!(max_thickness_m >= min_thickness_m)) {
-    throw_bad_option("max_thickness_m", max_thickness_m, ">= min_thickness_m");
-  }
-  for (const double thickness : thicknesses_m) positive("thicknesses_m", thickness);
-  if (!(wall_parallel_deg > 0.0 && wall_parallel_deg < 45.0)) {
-    throw_bad_option("wall_parallel_deg", wall_parallel_deg, "in (0, 45)");
-  }
-  if (max_poses < 1) throw_bad_option("max_poses", max_poses, ">= 1");
-}
-
 std::vector<OpeningPose> enumerate_opening_poses(const Features& source, const Features& target,
                                                  const OpeningPoseOptions& options) {
-  options.check();
-  WallWithOpeningsOptions wall_options;
-  if (options.gravity_known) wall_options.up = Vector3d::UnitZ();
-  const std::vector<WallWithOpenings> source_walls = walls_with_openings(source, wall_options);
-  const std::vector<WallWithOpenings> target_walls = walls_with_openings(target, wall_options);
+  std::optional<Vector3d> up;
+  if (options.gravity_known) up = Vector3d::UnitZ();
+  const std::vector<WallWithOpenings> source_walls = walls_with_openings(source, up);
+  const std::vector<WallWithOpenings> target_walls = walls_with_openings(target, up);
   std::vector<OpeningPose> all;
   const OpeningMatcher matcher(source_walls, target_walls, options);
   for (const WallSides sides : {WallSides::opposite, WallSides::same}) {
-    if (!(sides == WallSides::opposite ? options.try_opposite : options.try_same)) continue;
     const auto some = OpeningEnumerator(source, target, matcher, sides, options).run();
     all.insert(all.end(), some.begin(), some.end());
   }
-  return distinct_poses(std::move(all), middle_of(source_walls), options);
+  return distinct_poses(std::move(all), middle_of(source_walls));
 }
 
 }  // namespace limen

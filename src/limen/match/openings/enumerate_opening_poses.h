@@ -31,25 +31,20 @@ enum class WallSides : std::uint8_t {
 const char* to_string(WallSides sides);
 
 struct OpeningPoseOptions {
-  bool gravity_known = true;  ///< both z axes point up; else each opening's own upper side is taken
-  bool try_opposite = true;
-  bool try_same = true;
-  double size_tolerance_m = 0.25;  ///< widths and heights of one opening differ by no more (splayed reveals)
-  double edge_tolerance_m = 0.15;  ///< edges of one opening lie no farther apart, wall normal taken out
-  double same_rotation_deg = 1.0;  ///< poses nearer than this, and
-  double same_shift_m = 0.05;      ///< than this in the wall, and
-  double same_thickness_m = 0.05;  ///< than this across it, are one
-  double min_thickness_m = 0.05;   ///< of a wall between opposite sides
+  bool gravity_known = true;      ///< both z axes point up; else each opening's own upper side is taken
+  double min_thickness_m = 0.05;  ///< of a wall between opposite sides
   double max_thickness_m = 1.2;
-  double same_side_m = 0.3;  ///< faces seen from one side are taken for one within this
   std::vector<double> thicknesses_m = {0.15, 0.3, 0.45, 0.6};  ///< assumed where nothing holds the normal
-  double wall_parallel_deg = 6.0;                              ///< walls that meet differ by no more
   /// Poses that are fitted for each of the two cases of sides, the source's walls taking turns. Where nothing
   /// holds the normal, each is listed once per assumed thickness.
-  int max_poses = 600;
-
-  void check() const;
+  std::size_t max_poses = 600;
 };
+
+inline constexpr double kOpeningEdgesM =
+    0.15;  ///< edges of one opening lie no farther apart, wall normal taken out
+inline constexpr double kSameFaceM = 0.3;         ///< faces seen from one side are taken for one within this
+inline constexpr double kSameInWallM = 0.05;      ///< poses nearer than this in the wall, and
+inline constexpr double kSameAcrossWallM = 0.05;  ///< than this across it, are one
 
 /// An opening of each scan that are taken for one.
 struct OpeningPair {
@@ -78,7 +73,7 @@ struct OpeningPose {
 
 /// All poses that lay openings of the source on openings of the target, for any starting pose: lowest
 /// distance first, no two alike. On a regular façade all shifts by a window are listed. Deterministic. Empty
-/// where one scan has no opening. Throws Error for bad options.
+/// where one scan has no opening.
 std::vector<OpeningPose> enumerate_opening_poses(const Features& source, const Features& target,
                                                  const OpeningPoseOptions& options = {});
 

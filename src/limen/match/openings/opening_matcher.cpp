@@ -13,6 +13,9 @@
 namespace limen {
 namespace {
 
+constexpr double kOpeningSizesM =
+    0.25;  // widths and heights of one opening differ by no more (splayed reveals)
+constexpr double kMeetingWallsDeg = 6.0;   // walls that meet differ by no more
 constexpr double kLeastEdgeNoiseM = 0.01;  // least deviation between two detections of one edge
 constexpr double kRobustM = 0.05;          // edges farther off than this lose weight
 constexpr double kMaxToleranceM = 0.35;    // for edges that are known badly
@@ -53,7 +56,7 @@ std::size_t name_in_target(std::size_t k, WallSides sides) {
 OpeningMatcher::OpeningMatcher(std::vector<WallWithOpenings> source, std::vector<WallWithOpenings> target,
                                const OpeningPoseOptions& options)
     : source_(std::move(source)), target_(std::move(target)), options_(options) {
-  const double squared = options_.edge_tolerance_m * options_.edge_tolerance_m;
+  const double squared = kOpeningEdgesM * kOpeningEdgesM;
   for (const WallWithOpenings& wall : source_) {
     source_edges_.push_back(seen_edges(wall));
     for (const Segment& edge : source_edges_.back()) source_nominal_ += edge.length() * squared;
@@ -65,7 +68,7 @@ OpeningMatcher::OpeningMatcher(std::vector<WallWithOpenings> source, std::vector
     for (const WallRectangle& r : wall.rectangles) widest = std::max(widest, r.width());
     widest_m_.push_back(widest);
     SegmentDistanceOptions distance;
-    distance.max_distance_m = options_.edge_tolerance_m;
+    distance.max_distance_m = kOpeningEdgesM;
     distance.wall_normal = wall.normal();
     target_measures_.emplace_back(seen_edges(wall), distance);
     target_nominal_ += target_measures_.back().to({}).nominal;
@@ -77,8 +80,7 @@ bool OpeningMatcher::alike(const WallRectangle& a, const WallRectangle& b) const
   const bool horizontal = both_see(a, b, 0) || both_see(a, b, 2);
   if (!vertical || !horizontal) return false;
   const auto differs = [&](double size_a, double size_b, std::size_t k) {
-    return both_see(a, b, k) && both_see(a, b, k + 2) &&
-           std::abs(size_a - size_b) > options_.size_tolerance_m;
+    return both_see(a, b, k) && both_see(a, b, k + 2) && std::abs(size_a - size_b) > kOpeningSizesM;
   };
   return !differs(a.height(), b.height(), 0) && !differs(a.width(), b.width(), 1);
 }
@@ -89,8 +91,7 @@ std::optional<RectangleFit> OpeningMatcher::fit_of(const WallRectangle& a, const
   for (std::size_t k = 0; k < 4; ++k) {
     if (!both_see(a, b, k)) continue;
     const double off = a.edge[k] + (k % 2 == 0 ? shift.y() : shift.x()) - b.edge[k];
-    const double tolerance =
-        std::min(kMaxToleranceM, options_.edge_tolerance_m + 2.0 * std::sqrt(variance(a, b, k)));
+    const double tolerance = std::min(kMaxToleranceM, kOpeningEdgesM + 2.0 * std::sqrt(variance(a, b, k)));
     if (std::abs(off) > tolerance) return std::nullopt;
     ++fit.common_edges;
     fit.length_m += std::min(edge_length(a, k), edge_length(b, k));
@@ -132,14 +133,14 @@ std::vector<std::pair<std::size_t, std::size_t>> OpeningMatcher::pairs_at(
 }
 
 bool OpeningMatcher::possible(double thickness_m, WallSides sides) const {
-  if (sides == WallSides::same) return std::abs(thickness_m) <= options_.same_side_m;
+  if (sides == WallSides::same) return std::abs(thickness_m) <= kSameFaceM;
   return thickness_m >= options_.min_thickness_m && thickness_m <= options_.max_thickness_m;
 }
 
 bool OpeningMatcher::face(const Matrix3d& rotation, std::size_t source_wall, std::size_t target_wall,
                           WallSides sides) const {
   const double cosine = (rotation * source_[source_wall].normal()).dot(target_[target_wall].normal());
-  return (sides == WallSides::same ? cosine : -cosine) > std::cos(radians(options_.wall_parallel_deg));
+  return (sides == WallSides::same ? cosine : -cosine) > std::cos(radians(kMeetingWallsDeg));
 }
 
 double OpeningMatcher::thickness_at(const Rigid3& target_from_source, std::size_t source_wall,

@@ -6,11 +6,12 @@
 #include <cmath>
 
 #include "limen/base/angles.h"
-#include "limen/base/error.h"
 
 namespace limen {
 namespace {
 
+constexpr double kSameWallDeg = 5.0;  // openings whose planes differ by less, and
+constexpr double kSameWallM = 0.3;    // lie nearer than this to one plane, are of one wall
 constexpr double kMaxTiltSine = 0.5;  // planes that lean by more than 30 degrees are no walls
 
 Vector3d right_of(const Opening& opening) {
@@ -40,18 +41,17 @@ struct Group {
   std::vector<int> openings;
 };
 
-std::vector<Group> group_by_wall(const Features& features, const WallWithOpeningsOptions& options) {
-  const double min_cosine = std::cos(radians(options.same_wall_deg));
+std::vector<Group> group_by_wall(const Features& features, const std::optional<Vector3d>& up) {
+  const double min_cosine = std::cos(radians(kSameWallDeg));
   std::vector<Group> groups;
   for (std::size_t i = 0; i < features.openings.size(); ++i) {
     const Opening& opening = features.openings[i];
     const Vector3d normal = normal_of(features, opening);
     if (normal.isZero()) continue;
-    if (options.up && std::abs(normal.dot(*options.up)) > kMaxTiltSine) continue;
+    if (up && std::abs(normal.dot(*up)) > kMaxTiltSine) continue;
     const Vector3d centre = opening.middle();
     const auto same = std::find_if(groups.begin(), groups.end(), [&](const Group& group) {
-      return group.normal.dot(normal) > min_cosine &&
-             std::abs(normal.dot(centre - group.point)) < options.same_wall_m;
+      return group.normal.dot(normal) > min_cosine && std::abs(normal.dot(centre - group.point)) < kSameWallM;
     });
     if (same != groups.end()) {
       same->openings.push_back(static_cast<int>(i));
@@ -117,22 +117,13 @@ bool any_edge_seen(const WallRectangle& rectangle) {
 
 }  // namespace
 
-void WallWithOpeningsOptions::check() const {
-  if (up && !(std::abs(up->norm() - 1.0) < 1e-6)) throw_bad_option("up", up->norm(), "a unit vector");
-  if (!(same_wall_deg > 0.0 && same_wall_deg < 45.0)) {
-    throw_bad_option("same_wall_deg", same_wall_deg, "in (0, 45)");
-  }
-  if (!(same_wall_m > 0.0)) throw_bad_option("same_wall_m", same_wall_m, "> 0");
-}
-
 std::vector<WallWithOpenings> walls_with_openings(const Features& features,
-                                                  const WallWithOpeningsOptions& options) {
-  options.check();
+                                                  const std::optional<Vector3d>& up) {
   std::vector<WallWithOpenings> walls;
-  for (const Group& group : group_by_wall(features, options)) {
+  for (const Group& group : group_by_wall(features, up)) {
     WallWithOpenings wall;
     wall.facade = largest_plane(features, group);
-    wall.frame = frame_of(features, group, wall.facade, options.up);
+    wall.frame = frame_of(features, group, wall.facade, up);
     for (const int i : group.openings) {
       const WallRectangle rectangle =
           rectangle_of(features.openings[static_cast<std::size_t>(i)], i, wall.frame);

@@ -32,18 +32,10 @@ struct WallWithOpenings {
   [[nodiscard]] Vector3d normal() const { return frame.u.cross(frame.v); }
 };
 
-struct WallWithOpeningsOptions {
-  std::optional<Vector3d> up;  ///< unit: the vertical, where known; else the openings' own upper side
-  double same_wall_deg = 5.0;  ///< openings whose planes differ by less, and
-  double same_wall_m = 0.3;    ///< lie nearer than this to one plane, are of one wall
-
-  void check() const;
-};
-
 /// The openings of a scan by wall, in the order of their first opening. An opening without a side that was
 /// seen, or in a plane that is not a wall, is left out.
 std::vector<WallWithOpenings> walls_with_openings(const Features& features,
-                                                  const WallWithOpeningsOptions& options = {});
+                                                  const std::optional<Vector3d>& up = {});
 
 /// The rectangle as somebody on the other side of the wall sees it: left and right change places.
 WallRectangle seen_from_behind(const WallRectangle& rectangle);

@@ -13,7 +13,6 @@
 #include <Eigen/LU>
 
 #include "limen/base/angles.h"
-#include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/base/progress.h"
 #include "limen/geometry/cell_key.h"
@@ -25,6 +24,10 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 
+constexpr double kModelDirectionDeg = 5.0;     // normals nearer than this are one direction
+constexpr std::size_t kMostScanPlanes = 24;    // largest planes of the scan that are looked at
+constexpr double kLeastPieceM2 = 0.3;          // smaller pieces of the model are not tried
+constexpr double kSameModelShiftM = 0.08;      // poses nearer than about this are one
 constexpr double kMinNormalDeterminant = 0.2;  // three normals flatter than this do not fix a shift
 constexpr double kOtherDirection = 0.8;        // cosine: normals nearer than this are no two directions
 constexpr double kMeetM = 0.15;                // boxes of planes that meet may miss each other by this
@@ -361,13 +364,12 @@ class ModelEnumerator {
   ModelEnumerator(const Features& scan, const Features& model, const ModelPoseOptions& options)
       : options_(options) {
     for (const PlanarPolygon& polygon : model.planes) {
-      if (polygon.area_m2 >= options.min_plane_m2) model_.push_back(boxed(polygon, Matrix3d::Identity()));
+      if (polygon.area_m2 >= kLeastPieceM2) model_.push_back(boxed(polygon, Matrix3d::Identity()));
     }
     for (const PlanarPolygon& polygon : scan.planes) largest_.push_back(&polygon);
     std::stable_sort(largest_.begin(), largest_.end(),
                      [](const PlanarPolygon* a, const PlanarPolygon* b) { return a->area_m2 > b->area_m2; });
-    if (largest_.size() > static_cast<std::size_t>(options.max_scan_planes))
-      largest_.resize(static_cast<std::size_t>(options.max_scan_planes));
+    if (largest_.size() > kMostScanPlanes) largest_.resize(kMostScanPlanes);
     places_.emplace(model_);
   }
 
@@ -377,7 +379,7 @@ class ModelEnumerator {
     if (std::any_of(anchors.begin(), anchors.end(), [](const auto& list) { return list.empty(); })) return {};
     std::vector<ThirdAnchor> thirds;
     for (const Anchor& c : anchors[2]) thirds.push_back({&c, PartnersInOrder(c.partners)});
-    Ballot ballot(options_.same_shift_m);
+    Ballot ballot(kSameModelShiftM);
     VoteRoom room;
     for (const Anchor& a : anchors[0]) {
       for (const Anchor& b : anchors[1]) vote_pairs(a, b, thirds, room, ballot);
@@ -391,7 +393,7 @@ class ModelEnumerator {
     std::array<std::vector<Anchor>, 3> anchors;
     std::array<Vector3d, 3> directions;
     std::size_t known = 0;
-    const double near = std::cos(radians(options_.direction_deg));
+    const double near = std::cos(radians(kModelDirectionDeg));
     for (const PlanarPolygon* polygon : largest_) {
       const Vector3d normal = rotation * polygon->plane.normal;
       std::size_t at = 0;
@@ -425,7 +427,7 @@ class ModelEnumerator {
   }
 
   void add_partners(Anchor& anchor) const {
-    const double near = std::cos(radians(options_.direction_deg));
+    const double near = std::cos(radians(kModelDirectionDeg));
     anchor.partner_of.assign(model_.size(), -1);
     for (std::size_t i = 0; i < model_.size(); ++i) {
       const BoxedPlane& plane = model_[i];
@@ -489,23 +491,14 @@ class ModelEnumerator {
 
 }  // namespace
 
-void ModelPoseOptions::check() const {
-  if (anchors < 1) throw_bad_option("anchors", anchors, "1 or more");
-  if (max_scan_planes < 1) throw_bad_option("max_scan_planes", max_scan_planes, "1 or more");
-  if (!(min_plane_m2 > 0)) throw_bad_option("min_plane_m2", min_plane_m2, "more than 0");
-  if (!(same_shift_m > 0)) throw_bad_option("same_shift_m", same_shift_m, "more than 0");
-  if (max_poses < 1) throw_bad_option("max_poses", max_poses, "1 or more");
-}
-
 std::vector<PoseCandidate> enumerate_model_poses(const Features& scan, const Features& model,
                                                  const ModelPoseOptions& options) {
-  options.check();
   RotationOptions turning;
   turning.gravity_known = options.gravity_known;
   turning.gravity_tolerance_deg = options.gravity_tolerance_deg;
-  turning.direction_deg = options.direction_deg;
+  turning.direction_deg = kModelDirectionDeg;
   const std::vector<Matrix3d> rotations = enumerate_rotations(
-      axis_directions(scan, options.direction_deg), axis_directions(model, options.direction_deg), turning);
+      axis_directions(scan, kModelDirectionDeg), axis_directions(model, kModelDirectionDeg), turning);
   const ModelEnumerator enumerator(scan, model, options);
   // Some rotations at a time: of a large building each has a hundred thousand shifts.
   constexpr std::size_t kAtOnce = 16;

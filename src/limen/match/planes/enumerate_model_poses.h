@@ -11,14 +11,8 @@ namespace limen {
 struct ModelPoseOptions {
   bool gravity_known = true;           ///< both z axes point up: only turns about the vertical are tried
   double gravity_tolerance_deg = 4.0;  ///< by how much a level scanner may be off
-  double direction_deg = 5.0;          ///< normals nearer than this are one direction
   int anchors = 4;                     ///< planes of the scan tried per direction, largest first, >= 1
-  int max_scan_planes = 24;            ///< largest planes of the scan that are looked at, >= 1
-  double min_plane_m2 = 0.3;           ///< smaller pieces of the model are not tried, > 0
-  double same_shift_m = 0.08;          ///< poses nearer than about this are one, > 0
-  int max_poses = 6000;                ///< poses returned, those that most anchors agree on first, >= 1
-
-  void check() const;
+  int max_poses = 6000;                ///< poses returned, those that most anchors agree on first
 };
 
 /// Poses that lay three planes of a scan, facing three directions, on three of a model, wherever their

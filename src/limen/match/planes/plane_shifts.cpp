@@ -7,11 +7,15 @@
 #include <tuple>
 
 #include "limen/base/angles.h"
-#include "limen/base/error.h"
 
 namespace limen {
 namespace {
 
+constexpr double kMeetingDeg = 6.0;     // planes that meet differ by no more
+constexpr double kMeetingM2 = 0.05;     // of bounding rectangles
+constexpr double kHoldingCosine = 0.5;  // planes more oblique to the direction do not hold a shift along it
+constexpr std::size_t kMostShiftedPlanes =
+    96;  // of each scan: those seen through openings first, then the largest
 constexpr std::size_t kMaxPartsShifted = 6;  // of one plane, largest first
 
 /// A frame of the plane whose v is `up` as far as the plane allows.
@@ -24,24 +28,9 @@ PlaneFrame upright_frame(const Plane& plane, const Vector3d& near, const Vector3
 
 }  // namespace
 
-void PlaneShiftOptions::check() const {
-  if (!(parallel_deg > 0.0 && parallel_deg < 45.0)) {
-    throw_bad_option("parallel_deg", parallel_deg, "in (0, 45)");
-  }
-  if (!(min_normal_cosine > 0.0 && min_normal_cosine <= 1.0)) {
-    throw_bad_option("min_normal_cosine", min_normal_cosine, "in (0, 1]");
-  }
-  if (!(min_overlap_m2 >= 0.0)) throw_bad_option("min_overlap_m2", min_overlap_m2, ">= 0");
-  if (max_planes < 1) throw_bad_option("max_planes", max_planes, ">= 1");
-}
-
 PlaneShiftFinder::PlaneShiftFinder(const Features& source, const Features& target, const Vector3d& source_up,
-                                   const Vector3d& target_up, const PlaneShiftOptions& options)
-    : options_(options) {
-  options_.check();
-  source_ = boxed(source, source_up, options_.max_planes);
-  target_ = boxed(target, target_up, options_.max_planes);
-}
+                                   const Vector3d& target_up)
+    : source_(boxed(source, source_up)), target_(boxed(target, target_up)) {}
 
 PlaneShiftFinder::BoxedPlane PlaneShiftFinder::boxed(const PlanarPolygon& polygon, const Vector3d& up) {
   BoxedPlane result;
@@ -65,7 +54,7 @@ PlaneShiftFinder::BoxedPlane PlaneShiftFinder::boxed(const PlanarPolygon& polygo
 }
 
 std::vector<PlaneShiftFinder::BoxedPlane> PlaneShiftFinder::boxed(const Features& features,
-                                                                  const Vector3d& up, int most) {
+                                                                  const Vector3d& up) {
   std::vector<int> order;
   for (std::size_t i = 0; i < features.planes.size(); ++i) order.push_back(static_cast<int>(i));
   const auto plane = [&](int i) -> const PlanarPolygon& {
@@ -75,7 +64,7 @@ std::vector<PlaneShiftFinder::BoxedPlane> PlaneShiftFinder::boxed(const Features
     if (plane(a).interior != plane(b).interior) return plane(a).interior;
     return plane(a).area_m2 > plane(b).area_m2;
   });
-  if (order.size() > static_cast<std::size_t>(most)) order.resize(static_cast<std::size_t>(most));
+  if (order.size() > kMostShiftedPlanes) order.resize(kMostShiftedPlanes);
   std::vector<BoxedPlane> planes;
   for (const int i : order) {
     planes.push_back(boxed(plane(i), up));
@@ -112,12 +101,12 @@ PlaneShiftFinder::Overlap PlaneShiftFinder::overlap(const Rigid3& target_from_so
 
 std::vector<PlaneShift> PlaneShiftFinder::along(const Rigid3& target_from_source, const Vector3d& direction,
                                                 double low_m, double high_m) const {
-  const double min_cosine = std::cos(radians(options_.parallel_deg));
+  const double min_cosine = std::cos(radians(kMeetingDeg));
   std::vector<PlaneShift> found;
   for (const BoxedPlane& p : source_) {
     const Plane moved = transformed(target_from_source, p.plane);
     const double along = moved.normal.dot(direction);
-    if (std::abs(along) < options_.min_normal_cosine) continue;
+    if (std::abs(along) < kHoldingCosine) continue;
     for (const BoxedPlane& q : target_) {
       const double cosine = moved.normal.dot(q.plane.normal);
       if ((p.oriented && q.oriented ? cosine : std::abs(cosine)) < min_cosine) continue;
@@ -127,7 +116,7 @@ std::vector<PlaneShift> PlaneShiftFinder::along(const Rigid3& target_from_source
       if (shift < low_m - 1.0 || shift > high_m + 1.0) continue;
       const Rigid3 shifted{target_from_source.rotation, target_from_source.translation + shift * direction};
       const Overlap common = overlap(shifted, p, q);
-      if (!(common.area_m2 > 0.0) || common.area_m2 < options_.min_overlap_m2) continue;
+      if (!(common.area_m2 > 0.0) || common.area_m2 < kMeetingM2) continue;
       shift = shift_at(q.frame.to_space(common.middle));
       if (shift >= low_m && shift <= high_m) found.push_back({shift, common.area_m2, p.index, q.index});
     }

@@ -8,15 +8,6 @@
 
 namespace limen {
 
-struct PlaneShiftOptions {
-  double parallel_deg = 6.0;       ///< planes that meet differ by no more, in (0, 45)
-  double min_normal_cosine = 0.5;  ///< planes more oblique to the direction do not hold a shift along it
-  double min_overlap_m2 = 0.05;    ///< of bounding rectangles, >= 0
-  int max_planes = 96;             ///< of each scan: those seen through openings first, then the largest
-
-  void check() const;
-};
-
 /// Two planes, one of each scan, that a shift along a given direction lays on each other.
 struct PlaneShift {
   double shift_m = 0.0;     ///< along the direction, to be added to the pose
@@ -28,10 +19,9 @@ struct PlaneShift {
 /// Finds planes of two scans that hold a pose along one direction.
 class PlaneShiftFinder {
  public:
-  /// `source_up` and `target_up`: unit vectors; bounding rectangles stand upright by them. Throws Error for
-  /// bad options.
+  /// `source_up` and `target_up`: unit vectors; bounding rectangles stand upright by them.
   PlaneShiftFinder(const Features& source, const Features& target, const Vector3d& source_up,
-                   const Vector3d& target_up, const PlaneShiftOptions& options = {});
+                   const Vector3d& target_up);
 
   /// All shifts of `pose` along the unit vector `direction` (target frame), within [low_m, high_m], that lay
   /// a plane of the source on one of the target seen from the same side and overlapping it there; by shift.
@@ -56,14 +46,13 @@ class PlaneShiftFinder {
     Vector2d middle = Vector2d::Zero();  // in the target plane's frame
   };
 
-  [[nodiscard]] static std::vector<BoxedPlane> boxed(const Features& features, const Vector3d& up, int most);
+  [[nodiscard]] static std::vector<BoxedPlane> boxed(const Features& features, const Vector3d& up);
   [[nodiscard]] static BoxedPlane boxed(const PlanarPolygon& polygon, const Vector3d& up);
   [[nodiscard]] static Overlap overlap(const Rigid3& target_from_source, const BoxedPlane& source,
                                        const BoxedPlane& target);
 
   std::vector<BoxedPlane> source_;
   std::vector<BoxedPlane> target_;
-  PlaneShiftOptions options_;
 };
 
 /// A shift that several pairs of planes agree on.

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "limen/base/error.h"
+#include "limen/base/angles.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {
 namespace {
+
+constexpr double kAgreeingPlanesRad = radians(10.0);  // planes that differ by more do not agree at all
 
 /// A polygon of the other scan that may meet the one in question, and the weight of equation 10.
 struct NearPolygon {
@@ -18,16 +19,12 @@ struct NearPolygon {
   double weight = 0.0;
 };
 
-bool may_agree(const PlanarPolygon& a, const PlanarPolygon& b, const AgreementOptions& options) {
-  return angle_between(a.plane, b.plane) <= options.max_angle_rad;
-}
-
 std::vector<NearPolygon> candidates(const PlanarPolygon& a, const std::vector<PlanarPolygon>& scan,
-                                    const AgreementOptions& options) {
+                                    double max_distance_m) {
   std::vector<NearPolygon> found;
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (!may_agree(a, scan[i], options)) continue;
-    const double ratio = bisector_distance(a, scan[i]) / options.max_distance_m;
+    if (angle_between(a.plane, scan[i].plane) > kAgreeingPlanesRad) continue;
+    const double ratio = bisector_distance(a, scan[i]) / max_distance_m;
     if (ratio < 1.0) found.push_back({i, 1.0 - ratio * ratio});
   }
   std::stable_sort(found.begin(), found.end(),
@@ -84,17 +81,8 @@ double overlap_ratio(const PlanarPolygon& a, const PlanarPolygon& b) {
   return smaller > 0.0 ? std::min(1.0, common / smaller) : 0.0;  // (8)
 }
 
-void AgreementOptions::check() const {
-  if (!(max_distance_m > 0.0)) throw_bad_option("max_distance_m", max_distance_m, "greater than 0");
-  if (!(max_angle_rad > 0.0) || max_angle_rad > 0.5 * std::numbers::pi) {
-    throw_bad_option("max_angle_rad", max_angle_rad, "in (0, pi/2]");
-  }
-}
-
-double agreement(const PlanarPolygon& a, const std::vector<PlanarPolygon>& scan,
-                 const AgreementOptions& options) {
-  options.check();
-  const std::vector<NearPolygon> found = candidates(a, scan, options);
+double agreement(const PlanarPolygon& a, const std::vector<PlanarPolygon>& scan, double max_distance_m) {
+  const std::vector<NearPolygon> found = candidates(a, scan, max_distance_m);
   if (found.size() == 1) return found[0].weight * overlap_area(a, scan[found[0].index]);
   // Heaviest first: each adds only what the ones before it left open.
   std::vector<Polygon> covered;
@@ -113,10 +101,10 @@ double agreement(const PlanarPolygon& a, const std::vector<PlanarPolygon>& scan,
 }
 
 double scan_agreement(const std::vector<PlanarPolygon>& a, const std::vector<PlanarPolygon>& b,
-                      const AgreementOptions& options) {
+                      double max_distance_m) {
   double total = 0.0;
-  for (const PlanarPolygon& polygon : a) total += agreement(polygon, b, options);
-  for (const PlanarPolygon& polygon : b) total += agreement(polygon, a, options);
+  for (const PlanarPolygon& polygon : a) total += agreement(polygon, b, max_distance_m);
+  for (const PlanarPolygon& polygon : b) total += agreement(polygon, a, max_distance_m);
   return 0.5 * total;
 }
 

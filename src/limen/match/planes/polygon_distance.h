@@ -47,19 +47,14 @@ double overlap_area(const PlanarPolygon& a, const PlanarPolygon& b);
 /// Equation 8: |a' n b'| / min(|a'|, |b'|), in [0, 1]; 0 where one has no area.
 double overlap_ratio(const PlanarPolygon& a, const PlanarPolygon& b);
 
-struct AgreementOptions {
-  double max_distance_m = 0.1;           ///< d_thr of equations 9 and 10, > 0
-  double max_angle_rad = radians(10.0);  ///< planes that differ by more do not agree at all, in (0, pi/2]
-
-  void check() const;
-};
+inline constexpr double kAgreeingPlanesM = 0.1;  ///< d_thr of equations 9 and 10
 
 /// Equation 10: how much of `a` is met by the polygons of `scan`, weighted by 1 - distance^2 / d_thr^2.
 /// A score in m^2, between 0 and the area of `a`.
 double agreement(const PlanarPolygon& a, const std::vector<PlanarPolygon>& scan,
-                 const AgreementOptions& options = {});
+                 double max_distance_m = kAgreeingPlanesM);
 /// Mean over both directions of the summed agreement: the criterion that the best pose maximises, m^2.
 double scan_agreement(const std::vector<PlanarPolygon>& a, const std::vector<PlanarPolygon>& b,
-                      const AgreementOptions& options = {});
+                      double max_distance_m = kAgreeingPlanesM);
 
 }  // namespace limen

@@ -3,14 +3,18 @@
 #include "limen/match/planes/threshold_matching.h"
 
 #include <algorithm>
-#include <numbers>
 
-#include "limen/base/error.h"
+#include "limen/base/angles.h"
 #include "limen/match/planes/polygon_distance.h"
 
 namespace limen {
 namespace {
 
+constexpr double kMatchedPlanesRad = radians(5.0);
+constexpr double kMatchedPlanesM = 0.2;  // of equation 7
+constexpr double kMatchedShare = 0.3;    // of equation 8
+
+/// At most one partner for each polygon, larger overlaps first.
 std::vector<ThresholdMatch> exclusive(const std::vector<ThresholdMatch>& matches, std::size_t sources,
                                       std::size_t targets) {
   std::vector<char> source_taken(sources, 0);
@@ -28,30 +32,20 @@ std::vector<ThresholdMatch> exclusive(const std::vector<ThresholdMatch>& matches
 
 }  // namespace
 
-void ThresholdMatchingOptions::check() const {
-  if (!(max_angle_rad > 0.0) || max_angle_rad > 0.5 * std::numbers::pi) {
-    throw_bad_option("max_angle_rad", max_angle_rad, "in (0, pi/2]");
-  }
-  if (!(max_distance_m > 0.0)) throw_bad_option("max_distance_m", max_distance_m, "greater than 0");
-  if (!(min_overlap >= 0.0) || min_overlap > 1.0) throw_bad_option("min_overlap", min_overlap, "in [0, 1]");
-}
-
 std::vector<ThresholdMatch> match_by_thresholds(const std::vector<PlanarPolygon>& source,
                                                 const std::vector<PlanarPolygon>& target,
-                                                const Rigid3& start_target_from_source,
-                                                const ThresholdMatchingOptions& options) {
-  options.check();
+                                                const Rigid3& start_target_from_source) {
   std::vector<ThresholdMatch> matches;
   for (std::size_t i = 0; i < source.size(); ++i) {
     const PlanarPolygon moved = transformed(start_target_from_source, source[i]);
     for (std::size_t j = 0; j < target.size(); ++j) {
       ThresholdMatch match{static_cast<int>(i), static_cast<int>(j)};
       match.angle_rad = angle_between(moved.plane, target[j].plane);
-      if (match.angle_rad > options.max_angle_rad) continue;
+      if (match.angle_rad > kMatchedPlanesRad) continue;
       match.distance_m = bisector_distance(moved, target[j]);
-      if (match.distance_m > options.max_distance_m) continue;
+      if (match.distance_m > kMatchedPlanesM) continue;
       match.overlap = overlap_ratio(moved, target[j]);
-      if (match.overlap <= 0.0 || match.overlap < options.min_overlap) continue;
+      if (match.overlap < kMatchedShare) continue;
       match.overlap_m2 = overlap_area(moved, target[j]);
       matches.push_back(match);
     }
@@ -59,7 +53,7 @@ std::vector<ThresholdMatch> match_by_thresholds(const std::vector<PlanarPolygon>
   std::stable_sort(matches.begin(), matches.end(), [](const ThresholdMatch& a, const ThresholdMatch& b) {
     return a.overlap_m2 > b.overlap_m2;
   });
-  return options.one_to_one ? exclusive(matches, source.size(), target.size()) : matches;
+  return exclusive(matches, source.size(), target.size());
 }
 
 }  // namespace limen

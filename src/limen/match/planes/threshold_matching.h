@@ -4,21 +4,11 @@
 
 #include <vector>
 
-#include "limen/base/angles.h"
 #include "limen/geometry/polygon.h"
 
 namespace limen {
 
-/// Thresholds of the simple matching of Djahel, Monasse, Vallet 2021, section 3.2.1.
-struct ThresholdMatchingOptions {
-  double max_angle_rad = radians(5.0);  ///< in (0, pi/2]
-  double max_distance_m = 0.2;          ///< of equation 7, > 0
-  double min_overlap = 0.3;             ///< of equation 8, in [0, 1]
-  bool one_to_one = false;              ///< keep for each polygon at most one partner, larger overlaps first
-
-  void check() const;
-};
-
+/// A pair of the simple matching of Djahel, Monasse, Vallet 2021, section 3.2.1.
 struct ThresholdMatch {
   int source = -1;          ///< index into the source's polygons
   int target = -1;          ///< index into the target's polygons
@@ -28,12 +18,11 @@ struct ThresholdMatch {
   double overlap_m2 = 0.0;  ///< area in common
 };
 
-/// The paper's baseline: all pairs within the three thresholds once `start_target_from_source` is applied,
-/// largest common area first. It needs a good start and often gives several partners or none: that is why
-/// the cluster matching exists. Departures are those of polygon_distance.h.
+/// The paper's baseline: pairs within the three thresholds once `start_target_from_source` is applied,
+/// largest common area first, each polygon once. It needs a good start and often gives no partner: that is
+/// why the cluster matching exists. Departures are those of polygon_distance.h.
 std::vector<ThresholdMatch> match_by_thresholds(const std::vector<PlanarPolygon>& source,
                                                 const std::vector<PlanarPolygon>& target,
-                                                const Rigid3& start_target_from_source,
-                                                const ThresholdMatchingOptions& options = {});
+                                                const Rigid3& start_target_from_source);
 
 }  // namespace limen

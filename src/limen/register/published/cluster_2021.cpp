@@ -241,7 +241,7 @@ PublishedAnswer register_cluster_2021(const PublishedInput& input) {
     axis.target = members(target, *to.of[m], Matrix3d::Identity());
     axis.source_ones = by_offset(axis.source, axis.direction, kSameOffsetM);
     axis.target_ones = by_offset(axis.target, axis.direction, kSameOffsetM);
-    of[m] = pairings(axis, AgreementOptions{}.max_distance_m);
+    of[m] = pairings(axis, kAgreeingPlanesM);
   }
   const std::vector<Triple> ordered = triples(of);
   // Selection of the best hypothesis: equations 9 and 10.

@@ -8,10 +8,10 @@
 namespace limen {
 
 std::vector<WallEdges> wall_edges(const Features& features, bool upright) {
-  WallWithOpeningsOptions options;
-  if (upright) options.up = Vector3d::UnitZ();
+  std::optional<Vector3d> up;
+  if (upright) up = Vector3d::UnitZ();
   std::vector<WallEdges> walls;
-  for (const WallWithOpenings& wall : walls_with_openings(features, options)) {
+  for (const WallWithOpenings& wall : walls_with_openings(features, up)) {
     WallEdges edges;
     edges.normal = wall.normal();
     edges.right = wall.frame.u;

@@ -11,7 +11,7 @@
 // Djahel, Monasse, Vallet 2021, section 3.2.1: polygons that agree within three thresholds at the start.
 //
 // Departures from the printed text:
-// - the text gives no thresholds: those of ThresholdMatchingOptions, one partner for each polygon;
+// - the text gives no thresholds: those of match/planes/threshold_matching.cpp, one partner for each polygon;
 // - nor does it say how matches become a pose: here least squares over all of them, which is 3.3 (a rotation
 //   from pairs of directions) and 3.4 (a shift from pairs of planes) for any number of pairs;
 // - those of match/planes/polygon_distance.h and of the two solvers.
@@ -50,8 +50,7 @@ PublishedAnswer register_threshold_2021(const PublishedInput& input) {
   const std::vector<PlanarPolygon> source = common_polygons(input.source, input.source_outside);
   const std::vector<PlanarPolygon> target = common_polygons(input.target, input.target_outside);
   // 3.2.1: angle, distance (7) and overlap (8) within their thresholds.
-  const std::vector<ThresholdMatch> matches =
-      match_by_thresholds(source, target, input.start, {.one_to_one = true});
+  const std::vector<ThresholdMatch> matches = match_by_thresholds(source, target, input.start);
   if (matches.size() < 3) {
     return {std::nullopt, fmt::format("{} pairs of polygons agree within the thresholds at the start, three "
                                       "are needed",
