@@ -74,10 +74,7 @@ void add_interior(const Scan& scan, const ExtractOptions& options, ExtractedFeat
   grow.min_inliers = options.interior.min_inliers;
   StagePart choosing(monitor, 0.0, 0.5);
   if (scan.mobile()) {
-    AutomaticThresholdOptions by_noise;
-    by_noise.factors = {1.0};
-    grow.inlier_threshold_m =
-        std::min(features.inlier_threshold_m, automatic_threshold(part, grow, by_noise, choosing));
+    grow.inlier_threshold_m = std::min(features.inlier_threshold_m, noise_threshold(part, grow, choosing));
   } else {
     grow.inlier_threshold_m = features.inlier_threshold_m;
   }

@@ -3,12 +3,12 @@
 #include "limen/extract/planes/automatic_threshold.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "limen/base/drawn_steps.h"
-#include "limen/base/error.h"
 
 namespace limen {
 namespace {
@@ -81,17 +81,6 @@ bool better(const ThresholdScore& a, const ThresholdScore& b, ThresholdCriterion
 
 }  // namespace
 
-void ThresholdOptions::check() const {
-  if (thresholds_m.empty()) throw_bad_option("number of thresholds", 0.0, "at least 1");
-  for (std::size_t i = 0; i < thresholds_m.size(); ++i) {
-    if (!(thresholds_m[i] > 0.0)) throw_bad_option("thresholds_m", thresholds_m[i], "greater than 0");
-    if (i > 0 && !(thresholds_m[i] > thresholds_m[i - 1])) {
-      throw_bad_option("thresholds_m", thresholds_m[i], "greater than the one before");
-    }
-  }
-  if (min_inliers < 3) throw_bad_option("min_inliers", static_cast<double>(min_inliers), "at least 3");
-}
-
 double published_log10_nfa(const CloudSize& cloud, std::size_t planes, double threshold_m,
                            const ThresholdOptions& options) {
   const std::size_t possible = cloud.points / options.min_inliers;                    // (3), floor
@@ -114,7 +103,6 @@ double plane_log10_nfa(const CloudSize& cloud, const DetectedPlane& plane, doubl
 
 ThresholdChoice choose_threshold(const CloudSize& cloud, const ThresholdTrial& detector,
                                  const ThresholdOptions& options) {
-  options.check();
   ThresholdChoice choice;
   std::size_t best = 0;
   for (const double threshold_m : options.thresholds_m) {
@@ -126,17 +114,27 @@ ThresholdChoice choose_threshold(const CloudSize& cloud, const ThresholdTrial& d
       break;
   }
   choice.threshold_m = choice.scores[best].threshold_m;
-  choice.meaningful = choice.scores[best].log10_nfa < 0.0;
   return choice;
 }
 
 namespace {
 
-Scan even_subset(const Scan& scan, std::size_t most) {
+constexpr std::size_t kSubset = 40000;  // about so many points
+/// Thresholds tried, as multiples of the one that the noise within small cubes asks for.
+constexpr std::array kFactors = {1.0, 1.6, 2.5, 4.0};
+constexpr double kMostThresholdM = 0.04;
+
+/// What planes of the subset are grown with.
+GrowOptions for_subset(GrowOptions grow) {
+  grow.min_inliers = std::max(50, grow.min_inliers / 2);
+  return grow;
+}
+
+Scan even_subset(const Scan& scan) {
   Scan part;
   part.local_origin = scan.local_origin;
-  part.points.reserve(std::min(scan.size(), most));
-  for_drawn_steps(scan.size(), most, [&](std::size_t i) { part.points.push_back(scan.points[i]); });
+  part.points.reserve(std::min(scan.size(), kSubset));
+  for_drawn_steps(scan.size(), kSubset, [&](std::size_t i) { part.points.push_back(scan.points[i]); });
   return part;
 }
 
@@ -154,28 +152,23 @@ std::vector<DetectedPlane> detected(const GrownPlanes& grown) {
 
 }  // namespace
 
-void AutomaticThresholdOptions::check() const {
-  if (max_points < 1000) throw_bad_option("max_points", static_cast<double>(max_points), "1000 or more");
-  if (factors.empty()) throw_bad_option("number of factors", 0, "1 or more");
-  if (!(max_threshold_m > 0)) throw_bad_option("max_threshold_m", max_threshold_m, "more than 0");
+double noise_threshold(const Scan& scan, const GrowOptions& grow, Monitor& monitor) {
+  return PlaneGround(even_subset(scan), for_subset(grow)).grow(0.0, monitor).inlier_threshold_m;
 }
 
-double automatic_threshold(const Scan& scan, const GrowOptions& grow,
-                           const AutomaticThresholdOptions& options, Monitor& monitor) {
-  options.check();
-  const Scan part = even_subset(scan, options.max_points);
-  GrowOptions trial = grow;
-  trial.min_inliers = std::max(50, grow.min_inliers / 2);
+double automatic_threshold(const Scan& scan, const GrowOptions& grow, Monitor& monitor) {
+  const Scan part = even_subset(scan);
+  const GrowOptions trial = for_subset(grow);
   const PlaneGround ground(part, trial);
-  const double trials = 1.0 + static_cast<double>(options.factors.size());
-  StagePart first_part(monitor, 0.0, 1.0 / trials);
+  constexpr double kTrials = 1.0 + static_cast<double>(kFactors.size());
+  StagePart first_part(monitor, 0.0, 1.0 / kTrials);
   const GrownPlanes first = ground.grow(0.0, first_part);
   ThresholdOptions choice;
   choice.min_inliers = static_cast<std::size_t>(trial.min_inliers);
   choice.thresholds_m.clear();
   choice.until_worse = true;
-  for (const double factor : options.factors) {
-    const double threshold = std::min(options.max_threshold_m, factor * first.inlier_threshold_m);
+  for (const double factor : kFactors) {
+    const double threshold = std::min(kMostThresholdM, factor * first.inlier_threshold_m);
     if (choice.thresholds_m.empty() || threshold > choice.thresholds_m.back())
       choice.thresholds_m.push_back(threshold);
   }
@@ -184,8 +177,8 @@ double automatic_threshold(const Scan& scan, const GrowOptions& grow,
   double tried = 0.0;
   const auto detector = [&](double threshold_m) {
     if (threshold_m == first.inlier_threshold_m) return detected(first);
-    tried = std::min(tried + 1.0, trials - 1.0);
-    StagePart next_part(monitor, tried / trials, (tried + 1.0) / trials);
+    tried = std::min(tried + 1.0, kTrials - 1.0);
+    StagePart next_part(monitor, tried / kTrials, (tried + 1.0) / kTrials);
     return detected(ground.grow(threshold_m, next_part));
   };
   return choose_threshold({part.size(), extent.high - extent.low}, detector, choice).threshold_m;
@@ -193,9 +186,8 @@ double automatic_threshold(const Scan& scan, const GrowOptions& grow,
 
 double a_contrario_threshold(const Scan& scan, const GrowOptions& grow, const ThresholdOptions& choice,
                              Monitor& monitor) {
-  const Scan part = even_subset(scan, AutomaticThresholdOptions{}.max_points);
-  GrowOptions trial = grow;
-  trial.min_inliers = std::max(50, grow.min_inliers / 2);
+  const Scan part = even_subset(scan);
+  const GrowOptions trial = for_subset(grow);
   ThresholdOptions among = choice;
   among.min_inliers = static_cast<std::size_t>(trial.min_inliers);
   const Extent extent = extent_of(part.points);

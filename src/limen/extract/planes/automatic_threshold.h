@@ -36,8 +36,6 @@ struct ThresholdOptions {
   std::size_t min_inliers = 200;  ///< min_size of equation 3, >= 3
   /// Stops at the first threshold that is worse than the one before: noise has one scale.
   bool until_worse = false;
-
-  void check() const;
 };
 
 /// What the choice needs to know of the cloud.
@@ -63,7 +61,6 @@ struct ThresholdScore {
 
 struct ThresholdChoice {
   double threshold_m = 0.0;
-  bool meaningful = false;             ///< false: no threshold gives planes that are less likely than chance
   std::vector<ThresholdScore> scores;  ///< in the order of the options
 };
 
@@ -81,21 +78,13 @@ double published_log10_nfa(const CloudSize& cloud, std::size_t planes, double th
 double plane_log10_nfa(const CloudSize& cloud, const DetectedPlane& plane, double threshold_m,
                        const ThresholdOptions& options);
 
-struct AutomaticThresholdOptions {
-  std::size_t max_points = 40000;  ///< the choice is made on an even subset of about this many
-  /// Thresholds tried, as multiples of the one that the noise within small cubes asks for.
-  std::vector<double> factors = {1.0, 1.6, 2.5, 4.0};
-  double max_threshold_m = 0.04;
-
-  void check() const;
-};
+/// The inlier threshold in metres that the noise within small cubes of an even subset asks for.
+double noise_threshold(const Scan& scan, const GrowOptions& grow, Monitor& monitor = silent_monitor());
 
 /// The inlier threshold in metres for growing planes in `scan`, chosen a contrario (2021, 3.1.1) among
 /// multiples of what the noise asks for: walls that are not flat, and clouds joined from many sweeps, need
 /// more than their noise over a few decimetres tells.
-double automatic_threshold(const Scan& scan, const GrowOptions& grow,
-                           const AutomaticThresholdOptions& options = {},
-                           Monitor& monitor = silent_monitor());
+double automatic_threshold(const Scan& scan, const GrowOptions& grow, Monitor& monitor = silent_monitor());
 
 /// The threshold chosen a contrario among `choice.thresholds_m`, whatever the noise (2021, 3.1.1), on an even
 /// subset of about 40 000 points. `choice.min_inliers` is taken from `grow`.

@@ -41,15 +41,13 @@ double threshold_for(const Scan& scan, const DetectOptions& options, const GrowO
                      Monitor& monitor) {
   const ThresholdRule rule = options.threshold;
   if (grow.inlier_threshold_m > 0.0) return grow.inlier_threshold_m;
-  if (rule == ThresholdRule::automatic && !scan.mobile()) return automatic_threshold(scan, grow, {}, monitor);
+  if (rule == ThresholdRule::automatic && !scan.mobile()) return automatic_threshold(scan, grow, monitor);
   // The noise of the whole cloud: on a subset cubes are so large that relief counts as noise.
   if (rule == ThresholdRule::automatic && options.relief) return 0.0;
   if (rule == ThresholdRule::automatic) {
     // A street is too wide for the choice on a subset, and façades have relief of centimetres, whatever the
     // noise.
-    AutomaticThresholdOptions by_noise;
-    by_noise.factors = {1.0};
-    return std::max(kMobileThresholdM, automatic_threshold(scan, grow, by_noise, monitor));
+    return std::max(kMobileThresholdM, noise_threshold(scan, grow, monitor));
   }
   if (rule == ThresholdRule::a_contrario) return a_contrario_threshold(scan, grow, {}, monitor);
   if (rule == ThresholdRule::published)
@@ -136,15 +134,11 @@ DetectedPlanes detect_fine(const Scan& scan, const GrowOptions& grow, Monitor& m
 
 }  // namespace
 
-PlaneDetector detector_for(const Scan& /*scan*/) {
-  return PlaneDetector::grow;
-}
-
 DetectedPlanes detect_planes(const Scan& scan, const DetectOptions& options, const GrowOptions& grow,
                              Monitor& monitor) {
   grow.check();
   PlaneDetector detector = options.detector;
-  if (detector == PlaneDetector::automatic) detector = detector_for(scan);
+  if (detector == PlaneDetector::automatic) detector = PlaneDetector::grow;
   if (detector == PlaneDetector::published)
     detector = scan.topology.known() ? PlaneDetector::scan_lines : PlaneDetector::msac;
   if (scan.size() == 0) return {};

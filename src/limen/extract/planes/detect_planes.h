@@ -12,7 +12,7 @@
 namespace limen {
 
 enum class PlaneDetector {
-  automatic,   ///< the one that measured best: see detector_for
+  automatic,   ///< the one that measured best: grow. scan_lines is faster, but not better (docs/polygons.md)
   grow,        ///< cubes, coarse to fine: needs nothing but points (grow_planes.h)
   scan_lines,  ///< 2021, section 2.1: needs the scan's lines (topology_planes.h)
   msac,        ///< 2021, section 2.2: the published baseline, slow (msac_planes.h)
@@ -43,10 +43,6 @@ struct DetectedPlanes {
   double noise_m = 0.0;                          ///< root mean square distance of the inliers to their planes
   PlaneDetector detector = PlaneDetector::grow;  ///< the detector used; never automatic or published
 };
-
-/// The detector that `automatic` chooses: grow for every scan so far. Where the scan's lines are known
-/// scan_lines is faster, but not better (docs/polygons.md).
-PlaneDetector detector_for(const Scan& scan);
 
 /// Planes by the detector asked for. `grow.inlier_threshold_m` and `grow.min_inliers` hold for each of them.
 /// Throws Error where scan_lines is asked for and the scan's lines are not known.

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/extract/planes/join_pieces.h"
 #include "limen/extract/planes/relief_sheets.h"
@@ -138,14 +137,7 @@ PlaneLabels labelled_planes(const Scan& scan, const std::vector<PlanePiece>& pie
 
 }  // namespace
 
-void FineOptions::check() const {
-  if (!(noise_m >= 0)) throw_bad_option("noise_m", noise_m, "0 or more");
-  if (!(drift_m >= 0)) throw_bad_option("drift_m", drift_m, "0 or more");
-  if (min_inliers < 3) throw_bad_option("min_inliers", min_inliers, "3 or more");
-}
-
 PlaneLabels fine_planes(const Scan& scan, const PlaneLabels& planes, const FineOptions& options) {
-  options.check();
   if (planes.fits.empty()) return planes;
   const auto least = static_cast<std::size_t>(options.min_inliers);
   const Vector3d anchor = planes.fits.front().centroid;

@@ -17,8 +17,6 @@ struct FineOptions {
   double noise_m = 0.003;   ///< of a point about its plane, one standard deviation
   double drift_m = 0.0005;  ///< by which parts of one surface may stray beside the noise; stations: 0.001
   int min_inliers = 200;    ///< smallest plane, points
-
-  void check() const;
 };
 
 /// Planes of a mobile scan as finely as its noise allows: parts that only a gate had put together

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "limen/base/angles.h"
-#include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/extract/planes/join_pieces.h"
 #include "limen/extract/planes/plane_labels.h"
@@ -19,7 +18,9 @@
 namespace limen {
 namespace {
 
-/// One round.
+constexpr double kAround = 0.1;        // what a point of a cube around counts beside one of the own cube
+constexpr double kCoherentDeg = 20.0;  // between a plane and the surface at a point
+
 class CoherentChoice {
  public:
   CoherentChoice(const SettleScene& scene, const CoherentOptions& options,
@@ -37,7 +38,7 @@ class CoherentChoice {
         near.assign(counts_.of(i).begin(), counts_.of(i).end());
         for (const std::int32_t j : scene_.grid.around(i)) {
           for (const PlaneCount& other : counts_.of(static_cast<std::size_t>(j)))
-            add_count(near, 0, {other.plane, o_.around * other.count});
+            add_count(near, 0, {other.plane, kAround * other.count});
         }
         if (settled(i, near)) continue;
         for (PlaneCount& it : near) it.count = std::log(it.count);
@@ -80,7 +81,7 @@ class CoherentChoice {
   const std::vector<std::int32_t>& labels_;
   CubeCounts counts_;
   std::vector<Plane> planes_;
-  double min_cosine_ = std::cos(radians(o_.max_angle_deg));
+  double min_cosine_ = std::cos(radians(kCoherentDeg));
 };
 
 void move_point(const Vector3d& x, double count, PointMoments& sum) {
@@ -91,28 +92,16 @@ void move_point(const Vector3d& x, double count, PointMoments& sum) {
 
 }  // namespace
 
-void CoherentOptions::check() const {
-  if (!(threshold_m > 0)) throw_bad_option("threshold_m", threshold_m, "more than 0");
-  if (!(noise_m > 0)) throw_bad_option("noise_m", noise_m, "more than 0");
-  if (!(around >= 0)) throw_bad_option("around", around, "0 or more");
-  if (!(max_angle_deg > 0 && max_angle_deg < 90))
-    throw_bad_option("max_angle_deg", max_angle_deg, "within (0, 90)");
-  if (rounds < 1) throw_bad_option("rounds", rounds, "1 or more");
-}
-
 void coherent_labels(const SettleScene& scene, const CoherentOptions& options,
                      std::vector<std::int32_t>& labels, std::vector<PointMoments>& sums) {
-  options.check();
-  for (int round = 0; round < options.rounds; ++round) {
-    std::vector<std::int32_t> chosen = CoherentChoice(scene, options, labels, sums).run();
-    for (std::size_t k = 0; k < labels.size(); ++k) {
-      if (chosen[k] == labels[k]) continue;
-      const Vector3d x = scene.sorted.point(k);
-      if (labels[k] >= 0) move_point(x, -1.0, sums[static_cast<std::size_t>(labels[k])]);
-      if (chosen[k] >= 0) move_point(x, 1.0, sums[static_cast<std::size_t>(chosen[k])]);
-    }
-    labels = std::move(chosen);
+  std::vector<std::int32_t> chosen = CoherentChoice(scene, options, labels, sums).run();
+  for (std::size_t k = 0; k < labels.size(); ++k) {
+    if (chosen[k] == labels[k]) continue;
+    const Vector3d x = scene.sorted.point(k);
+    if (labels[k] >= 0) move_point(x, -1.0, sums[static_cast<std::size_t>(labels[k])]);
+    if (chosen[k] >= 0) move_point(x, 1.0, sums[static_cast<std::size_t>(chosen[k])]);
   }
+  labels = std::move(chosen);
 }
 
 namespace {
@@ -237,7 +226,6 @@ class CurveLabels {
 
 PlaneLabels fine_station_planes(const Scan& scan, const MortonOrder& order, const GrownPlanes& grown,
                                 const FineOptions& options) {
-  options.check();
   if (grown.planes.fits.empty()) return grown.planes;
   CurveLabels labels(scan, order, grown, options);
   labels.add_sheets();

@@ -13,13 +13,8 @@
 namespace limen {
 
 struct CoherentOptions {
-  double threshold_m = 0.01;    ///< farthest a point may lie from its plane
-  double noise_m = 0.003;       ///< of a point about its plane, one standard deviation
-  double around = 0.1;          ///< what a point of a cube around counts beside one of the own cube
-  double max_angle_deg = 20.0;  ///< between a plane and the surface at a point
-  int rounds = 1;
-
-  void check() const;
+  double threshold_m = 0.01;  ///< farthest a point may lie from its plane
+  double noise_m = 0.003;     ///< of a point about its plane, one standard deviation
 };
 
 /// Every point goes to the plane that is likeliest to have been met there: by its distance, in noises, and by

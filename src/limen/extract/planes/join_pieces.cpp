@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "limen/base/angles.h"
-#include "limen/base/error.h"
 #include "limen/extract/planes/merge_planes.h"
 
 namespace limen {
@@ -48,6 +47,8 @@ std::vector<std::vector<std::uint32_t>> touching_parts(const Scan& scan, const P
 
 namespace {
 
+constexpr double kJoinReachM = 0.03;  // root mean square distance of a piece from a plane it may belong to
+constexpr double kJoinedDeg = 3.0;    // between the normals of pieces wide enough to have one
 constexpr double kChiSquared = 16.3;  // of three freedoms, exceeded once in a thousand
 constexpr double kWideNoises = 8.0;   // times the noise: a piece so wide has a normal of its own
 
@@ -59,15 +60,14 @@ double squares_about_own(const PointMoments& moments, const PlaneFit& fit) {
 /// planes.
 class PieceJoin {
  public:
-  explicit PieceJoin(const JoinOptions& options)
-      : o_(options), cosine_(std::cos(radians(options.max_angle_deg))) {}
+  explicit PieceJoin(const JoinOptions& options) : o_(options) {}
 
   [[nodiscard]] double strain(const PlanePiece& piece, const PlaneFit& a_fit, const PlanePiece& other,
                               const PlaneFit& b_fit) const {
     constexpr double kNever = std::numeric_limits<double>::infinity();
     const PointMoments& a = piece.moments;
     const PointMoments& b = other.moments;
-    if (rms_about(b, a_fit.plane) > o_.reach_m) return kNever;
+    if (rms_about(b, a_fit.plane) > kJoinReachM) return kNever;
     if (piece.sight.dot(a_fit.plane.normal) * other.sight.dot(a_fit.plane.normal) < 0.0) return kNever;
     if (wide(a_fit) && wide(b_fit) && std::abs(a_fit.plane.normal.dot(b_fit.plane.normal)) < cosine_)
       return kNever;
@@ -86,7 +86,7 @@ class PieceJoin {
   }
 
   JoinOptions o_;
-  double cosine_;
+  double cosine_ = std::cos(radians(kJoinedDeg));
 };
 
 bool larger(const PlanePiece& a, const PlanePiece& b) {
@@ -94,14 +94,6 @@ bool larger(const PlanePiece& a, const PlanePiece& b) {
 }
 
 }  // namespace
-
-void JoinOptions::check() const {
-  if (!(noise_m > 0)) throw_bad_option("noise_m", noise_m, "more than 0");
-  if (!(drift_m >= 0)) throw_bad_option("drift_m", drift_m, "0 or more");
-  if (!(reach_m > 0)) throw_bad_option("reach_m", reach_m, "more than 0");
-  if (!(max_angle_deg > 0 && max_angle_deg < 45))
-    throw_bad_option("max_angle_deg", max_angle_deg, "within (0, 45)");
-}
 
 PlanePiece piece_of(const Scan& scan, std::vector<std::uint32_t> points, const Vector3d& anchor) {
   PlanePiece piece;
@@ -139,7 +131,6 @@ std::vector<PlanePiece> parts_of(const Scan& scan, const PlaneFit& fit,
 }
 
 std::vector<PlanePiece> joined_pieces(std::vector<PlanePiece> pieces, const JoinOptions& options) {
-  options.check();
   std::stable_sort(pieces.begin(), pieces.end(), larger);
   const PieceJoin join(options);
   std::vector<PlanePiece> planes;

@@ -20,10 +20,6 @@ std::vector<std::vector<std::uint32_t>> touching_parts(const Scan& scan, const P
 struct JoinOptions {
   double noise_m = 0.003;   ///< of a point about its plane, one standard deviation
   double drift_m = 0.0005;  ///< by which parts of one surface may stray beside the noise: trajectories drift
-  double reach_m = 0.03;    ///< root mean square distance of a piece from a plane it may belong to
-  double max_angle_deg = 3.0;  ///< between the normals of pieces wide enough to have one
-
-  void check() const;
 };
 
 /// Points of one plane that are connected.

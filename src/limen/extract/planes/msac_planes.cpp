@@ -8,7 +8,6 @@
 #include <numeric>
 #include <optional>
 
-#include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/consensus/msac.h"
 #include "limen/extract/cells/morton_order.h"
@@ -17,6 +16,10 @@
 namespace limen {
 namespace {
 
+constexpr double kSampleCubeM = 0.5;       // size of the cube that a sample is drawn from
+constexpr double kConfidence = 0.99;       // of having hit the largest plane left
+constexpr std::size_t kMostTrials = 2000;  // per plane
+constexpr std::size_t kJudges = 10000;     // points, evenly chosen, that score a sample
 constexpr std::size_t kPointsPerVote = 65536;
 constexpr int kFits = 3;         // of a plane to its inliers
 constexpr int kMaxFailures = 3;  // samplings in a row without a plane that is large enough
@@ -72,7 +75,7 @@ class MsacDetector {
  public:
   MsacDetector(const Scan& scan, const MsacPlaneOptions& options)
       : options_(options),
-        sorted_(morton_order(scan.points, options.reach_m > 0.0 ? options.reach_m : 1.0)),
+        sorted_(morton_order(scan.points, kSampleCubeM)),
         labels_(scan.size(), -1),
         free_(scan.size()) {
     std::iota(free_.begin(), free_.end(), 0U);
@@ -95,10 +98,8 @@ class MsacDetector {
 
   [[nodiscard]] std::optional<Plane> best_plane(std::uint64_t round) const {
     const PlaneEstimator estimator{sorted_, free_};
-    const MsacOptions options{options_.inlier_threshold_m, options_.confidence, options_.most_trials,
-                              options_.judges};
+    const MsacOptions options{options_.inlier_threshold_m, kConfidence, kMostTrials, kJudges};
     const std::uint64_t seed = mix64(options_.seed) + round;
-    if (!(options_.reach_m > 0.0)) return msac(estimator, UniformSampler(free_.size(), seed), options).model;
     std::vector<std::uint64_t> codes;
     codes.reserve(free_.size());
     for (const std::uint32_t position : free_) codes.push_back(sorted_.codes[position]);
@@ -161,16 +162,7 @@ class MsacDetector {
 
 }  // namespace
 
-void MsacPlaneOptions::check() const {
-  if (!(inlier_threshold_m > 0.0)) throw_bad_option("inlier_threshold_m", inlier_threshold_m, "more than 0");
-  if (min_inliers < 3) throw_bad_option("min_inliers", min_inliers, "3 or more");
-  if (!(reach_m >= 0.0)) throw_bad_option("reach_m", reach_m, "0 or more");
-  if (!(confidence > 0.0 && confidence < 1.0)) throw_bad_option("confidence", confidence, "in (0, 1)");
-  if (most_trials < 1) throw_bad_option("most_trials", static_cast<double>(most_trials), "1 or more");
-}
-
 PlaneLabels msac_planes(const Scan& scan, const MsacPlaneOptions& options, Monitor& monitor) {
-  options.check();
   if (scan.size() == 0) return {};
   return MsacDetector(scan, options).run(monitor);
 }

@@ -24,13 +24,7 @@ namespace limen {
 struct MsacPlaneOptions {
   double inlier_threshold_m = 0.02;  ///< > 0
   int min_inliers = 200;             ///< smallest plane, points, >= 3
-  double reach_m = 0.5;              ///< size of the cube that a sample is drawn from; 0: the whole cloud
-  double confidence = 0.99;          ///< of having hit the largest plane left, in (0, 1)
-  std::size_t most_trials = 2000;    ///< per plane
-  std::size_t judges = 10000;        ///< points, evenly chosen, that score a sample; 0: all, as printed
   std::uint64_t seed = 1;
-
-  void check() const;
 };
 
 /// Planes, most inliers first, and the plane of each point. A plane takes every free point within the

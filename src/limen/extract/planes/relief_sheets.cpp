@@ -10,12 +10,16 @@
 #include <optional>
 #include <utility>
 
-#include "limen/base/error.h"
-
 namespace limen {
 namespace {
 
-constexpr std::size_t kBins = 4;    // of the histogram of offsets, per threshold
+constexpr double kWallWithReliefM2 = 6.0;  // area of a wall whose relief is looked at
+constexpr double kWallWithReliefM = 1.0;   // and its narrower side
+constexpr double kReliefBeforeM = 1.0;     // how far the relief protrudes
+constexpr double kReliefBehindM = 0.8;     // and how deep the openings are
+constexpr double kAsideM = 0.5;            // beyond the wall's own points
+constexpr double kPureShare = 0.85;        // of a sheet's points, that its surroundings do not explain
+constexpr std::size_t kBins = 4;           // of the histogram of offsets, per threshold
 constexpr double kPatchM = 0.5;     // edge of the squares in which a sheet is denser than what lies beside it
 constexpr std::size_t kDenser = 3;  // times: a square's slab against what lies beside it
 constexpr double kUprightSine = 0.17;  // walls: at most so much of the normal is up
@@ -47,15 +51,15 @@ Vector3d up_for(const Scan& scan, const PlaneLabels& planes, const Vector3d& nor
   return normal.unitOrthogonal();
 }
 
-bool is_wall(const PlaneFit& fit, const SheetOptions& options) {
-  return 12.0 * std::sqrt(fit.variances[1] * fit.variances[2]) >= options.min_wall_m2 &&
-         std::sqrt(12.0 * fit.variances[1]) >= options.min_wall_width_m;
+bool is_wall(const PlaneFit& fit) {
+  return 12.0 * std::sqrt(fit.variances[1] * fit.variances[2]) >= kWallWithReliefM2 &&
+         std::sqrt(12.0 * fit.variances[1]) >= kWallWithReliefM;
 }
 
 std::optional<WallSpace> wall_space(const Scan& scan, const PlaneLabels& planes, std::size_t k,
-                                    const std::vector<std::uint32_t>& points, const SheetOptions& options) {
+                                    const std::vector<std::uint32_t>& points) {
   const PlaneFit& fit = planes.fits[k];
-  if (points.empty() || !is_wall(fit, options)) return std::nullopt;
+  if (points.empty() || !is_wall(fit)) return std::nullopt;
   const Vector3d up = up_for(scan, planes, fit.plane.normal);
   if (std::abs(up.dot(fit.plane.normal)) > kUprightSine) return std::nullopt;
   WallSpace wall;
@@ -70,10 +74,10 @@ std::optional<WallSpace> wall_space(const Scan& scan, const PlaneLabels& planes,
     wall.low = wall.low.cwiseMin(p);
     wall.high = wall.high.cwiseMax(p);
   }
-  wall.low.array() -= options.aside_m;
-  wall.high.array() += options.aside_m;
-  wall.low[0] = -options.behind_m;
-  wall.high[0] = options.before_m;
+  wall.low.array() -= kAsideM;
+  wall.high.array() += kAsideM;
+  wall.low[0] = -kReliefBehindM;
+  wall.high[0] = kReliefBeforeM;
   return wall;
 }
 
@@ -145,7 +149,7 @@ class SheetSearch {
     }
     counts.finish();
     std::vector<PlanePiece> sheets;
-    for (const double offset : counts.peaks(o_.min_inliers, o_.min_pure)) {
+    for (const double offset : counts.peaks(o_.min_inliers, kPureShare)) {
       PlanePiece sheet = sheet_at(seen, axis, offset, taken);
       if (sheet.points.size() < static_cast<std::size_t>(o_.min_inliers)) continue;
       for (const std::uint32_t i : sheet.points) taken[i] = 1;
@@ -201,7 +205,7 @@ class SheetSearch {
       kept.insert(kept.end(), patch.in.begin(), patch.in.end());
       beside += patch.beside;
     }
-    if (static_cast<double>(beside) > (1.0 - o_.min_pure) * static_cast<double>(kept.size())) return {};
+    if (static_cast<double>(beside) > (1.0 - kPureShare) * static_cast<double>(kept.size())) return {};
     std::sort(kept.begin(), kept.end());
     return piece_of(scan_, std::move(kept), anchor_);
   }
@@ -214,15 +218,8 @@ class SheetSearch {
 
 }  // namespace
 
-void SheetOptions::check() const {
-  if (!(threshold_m > 0)) throw_bad_option("threshold_m", threshold_m, "more than 0");
-  if (min_inliers < 3) throw_bad_option("min_inliers", min_inliers, "3 or more");
-  if (!(min_pure > 0 && min_pure <= 1)) throw_bad_option("min_pure", min_pure, "within (0, 1]");
-}
-
 std::vector<PlanePiece> relief_sheets(const Scan& scan, const PlaneLabels& planes, const Vector3d& anchor,
                                       const SheetOptions& options, const std::vector<std::int32_t>& tails) {
-  options.check();
   if (!scan.centre_known()) return {};
   std::vector<char> taken(scan.size(), 0);
   for (std::size_t i = 0; i < taken.size(); ++i) taken[i] = planes.labels[i] >= 0 ? 1 : 0;
@@ -233,7 +230,7 @@ std::vector<PlanePiece> relief_sheets(const Scan& scan, const PlaneLabels& plane
   }
   std::vector<PlanePiece> sheets;
   for (std::size_t k = 0; k < points.size(); ++k) {
-    const std::optional<WallSpace> wall = wall_space(scan, planes, k, points[k], options);
+    const std::optional<WallSpace> wall = wall_space(scan, planes, k, points[k]);
     if (!wall) continue;
     std::vector<ReliefPoint> free;
     for (const std::uint32_t i : loose) {

@@ -12,16 +12,8 @@
 namespace limen {
 
 struct SheetOptions {
-  double threshold_m = 0.008;     ///< farthest a point may lie from its sheet
-  int min_inliers = 200;          ///< smallest sheet, points
-  double min_wall_m2 = 6.0;       ///< area of a wall whose relief is looked at
-  double min_wall_width_m = 1.0;  ///< and its narrower side
-  double before_m = 1.0;          ///< how far the relief protrudes
-  double behind_m = 0.8;          ///< and how deep the openings are
-  double aside_m = 0.5;           ///< beyond the wall's own points
-  double min_pure = 0.85;         ///< share of a sheet's points that its surroundings do not explain
-
-  void check() const;
+  double threshold_m = 0.008;  ///< farthest a point may lie from its sheet
+  int min_inliers = 200;       ///< smallest sheet, points
 };
 
 /// Sheets of the relief of walls: frames, mouldings, sides of openings, each in many narrow strips all along

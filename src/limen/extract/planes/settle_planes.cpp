@@ -36,11 +36,14 @@ CubeCounts::CubeCounts(const CellRuns& runs, const std::vector<std::int32_t>& la
 
 namespace {
 
+constexpr double kSettledDeg = 20.0;        // between a plane and the surface at a point
+constexpr std::uint32_t kLeastSupport = 4;  // points of a plane in a cube that make it a candidate there
+
 /// Planes by cube.
 class SupportGrid {
  public:
-  SupportGrid(const SettleGrid& grid, const std::vector<std::int32_t>& labels, std::uint32_t min_support)
-      : grid_(grid), counts_(grid.runs(), labels, min_support) {}
+  SupportGrid(const SettleGrid& grid, const std::vector<std::int32_t>& labels)
+      : grid_(grid), counts_(grid.runs(), labels, kLeastSupport) {}
 
   [[nodiscard]] const CellRuns& runs() const { return grid_.runs(); }
 
@@ -70,9 +73,8 @@ class Candidates {
         normals_(scene.normals),
         labels_(labels),
         planes_(std::move(planes)),
-        grid_(scene.grid, labels, options.min_support),
-        threshold_m_(options.threshold_m),
-        min_cosine_(std::cos(radians(options.max_angle_deg))) {}
+        grid_(scene.grid, labels),
+        threshold_m_(options.threshold_m) {}
 
   [[nodiscard]] const SupportGrid& grid() const { return grid_; }
   [[nodiscard]] double distance(std::uint32_t k, std::int32_t plane) const {
@@ -107,7 +109,7 @@ class Candidates {
   std::vector<Plane> planes_;
   SupportGrid grid_;
   double threshold_m_;
-  double min_cosine_;
+  double min_cosine_ = std::cos(radians(kSettledDeg));
 };
 
 std::vector<Plane> planes_of(const std::vector<PointMoments>& sums) {

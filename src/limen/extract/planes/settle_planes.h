@@ -44,10 +44,8 @@ class CubeCounts {
 };
 
 struct SettleOptions {
-  double threshold_m = 0.01;      ///< farthest a point may lie from its plane
-  double cell_m = 0.08;           ///< a point may join the planes of its cube and of the cubes around it
-  double max_angle_deg = 20.0;    ///< between a plane and the surface at a point
-  std::uint32_t min_support = 4;  ///< points of a plane in a cube that make it a candidate there
+  double threshold_m = 0.01;  ///< farthest a point may lie from its plane
+  double cell_m = 0.08;       ///< a point may join the planes of its cube and of the cubes around it
 };
 
 /// The cubes in which points choose among planes, with their neighbours: made once for several settlings.

@@ -17,6 +17,11 @@
 namespace limen {
 namespace {
 
+constexpr double kPointsOfCell = 16.0;  // about so many points of a cell of the plane
+constexpr double kFinestM = 0.012;      // edge of the smallest cell
+constexpr double kCoarsestM = 0.5;      // and of the largest
+constexpr double kLeastOfPart = 30.0;   // smaller parts that join no other are left out
+
 /// Sums of heights h over places (u, v) of a plane.
 struct HeightSums {
   double n = 0.0;
@@ -363,7 +368,7 @@ class StepParts {
       }
       if (with != c) {
         join(with, c, best);
-      } else if (cells_[c].n >= o_.least_points) {
+      } else if (cells_[c].n >= kLeastOfPart) {
         kept.push_back(c);
       }
     }
@@ -374,7 +379,7 @@ class StepParts {
     std::vector<std::vector<std::uint32_t>> parts;
     for (std::size_t k = 0; k < points_.size(); ++k) {
       const std::size_t root = root_of(cell_of_[k]);
-      if (cells_[root].n < o_.least_points) continue;
+      if (cells_[root].n < kLeastOfPart) continue;
       if (number[root] < 0) {
         number[root] = static_cast<std::int32_t>(parts.size());
         parts.emplace_back();
@@ -399,18 +404,9 @@ class StepParts {
 
 }  // namespace
 
-void StepOptions::check() const {
-  if (!(drift_m >= 0)) throw_bad_option("drift_m", drift_m, "0 or more");
-  if (!(step_m >= 0)) throw_bad_option("step_m", step_m, "0 or more");
-  if (!(points_of_cell >= 1)) throw_bad_option("points_of_cell", points_of_cell, "1 or more");
-  if (!(finest_m > 0)) throw_bad_option("finest_m", finest_m, "more than 0");
-  if (!(coarsest_m >= finest_m)) throw_bad_option("coarsest_m", coarsest_m, "at least finest_m");
-}
-
 std::vector<std::vector<std::uint32_t>> split_at_steps(const Scan& scan, const PlaneFit& fit,
                                                        const std::vector<std::uint32_t>& points,
                                                        const StepOptions& options) {
-  options.check();
   if (points.empty()) return {};
   return StepParts(scan, fit, points, options).run();
 }

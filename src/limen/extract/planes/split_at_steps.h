@@ -13,12 +13,6 @@ namespace limen {
 struct StepOptions {
   double drift_m = 0.001;  ///< by which parts of one surface may stray beside the noise
   double step_m = 0.0015;  ///< mean step where two parts touch, up to which they are one bulging surface
-  double points_of_cell = 16.0;  ///< about so many points of a cell of the plane
-  double least_points = 30.0;    ///< smaller parts that join no other are left out
-  double finest_m = 0.012;       ///< edge of the smallest cell
-  double coarsest_m = 0.5;       ///< and of the largest
-
-  void check() const;
 };
 
 /// A plane's points in parts, each of one surface as far as the noise allows: two neighbours 4 mm apart in

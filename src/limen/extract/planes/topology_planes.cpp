@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <optional>
 
+#include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/base/random.h"
@@ -17,6 +17,10 @@
 namespace limen {
 namespace {
 
+constexpr double kMaxJump = 4.0;          // of neighbours, in units of the local spacing
+constexpr double kSampleReachM = 0.35;    // size of the neighbourhood that samples are drawn from
+constexpr double kHitConfidence = 0.999;  // of hitting the smallest plane before giving up
+constexpr double kMergedDeg = 3.0;        // between pieces of one plane
 constexpr std::int32_t kFree = -1;
 constexpr std::size_t kRound = 256;        // trials judged at a time
 constexpr int kSamples = 4;                // triples drawn per trial
@@ -51,7 +55,7 @@ class TopologyDetector {
   TopologyDetector(const Scan& scan, const TopologyPlaneOptions& options)
       : scan_(scan),
         options_(options),
-        grid_(scan, options.max_jump),
+        grid_(scan, kMaxJump),
         labels_(scan.size(), kFree),
         visited_(scan.size(), 0),
         refused_(scan.size(), 0),
@@ -65,7 +69,7 @@ class TopologyDetector {
   PlaneLabels run(Monitor& monitor) {
     // How often a plane of min_inliers points, still free, would have been hit by now.
     double hits = 0.0;
-    for (std::uint64_t trial = 0; hits < -std::log(1.0 - options_.confidence) && free_.size() >= wanted();
+    for (std::uint64_t trial = 0; hits < -std::log(1.0 - kHitConfidence) && free_.size() >= wanted();
          trial += kRound) {
       monitor.throw_if_cancelled();
       hits += static_cast<double>(kRound * wanted()) / static_cast<double>(free_.size());
@@ -109,7 +113,7 @@ class TopologyDetector {
     std::int32_t at = grid_.links(from)[link];
     while (places.size() < most && is_free(at)) {
       const auto place = static_cast<std::size_t>(at);
-      if ((grid_.point(place) - grid_.point(from)).norm() > options_.reach_m && places.size() >= 3) break;
+      if ((grid_.point(place) - grid_.point(from)).norm() > kSampleReachM && places.size() >= 3) break;
       places.push_back(place);
       at = grid_.links(place)[link];
     }
@@ -258,7 +262,7 @@ class TopologyDetector {
   }
 
   void merge_pieces() {
-    MergedPieces merged = merge_planes(pieces_, options_.max_merge_angle_rad, 0.6 * threshold_m_);
+    MergedPieces merged = merge_planes(pieces_, radians(kMergedDeg), 0.6 * threshold_m_);
     pieces_ = std::move(merged.planes);
     for (std::int32_t& label : labels_) {
       if (label != kFree) label = merged.target[static_cast<std::size_t>(label)];
@@ -351,19 +355,7 @@ class TopologyDetector {
 
 }  // namespace
 
-void TopologyPlaneOptions::check() const {
-  if (!(inlier_threshold_m >= 0.0)) throw_bad_option("inlier_threshold_m", inlier_threshold_m, "at least 0");
-  if (min_inliers < 12) throw_bad_option("min_inliers", min_inliers, "at least 12");
-  if (!(max_jump > 1.0)) throw_bad_option("max_jump", max_jump, "greater than 1");
-  if (!(reach_m > 0.0)) throw_bad_option("reach_m", reach_m, "greater than 0");
-  if (!(confidence > 0.0 && confidence < 1.0)) throw_bad_option("confidence", confidence, "in (0, 1)");
-  if (!(max_merge_angle_rad >= 0.0 && max_merge_angle_rad < 0.25 * std::numbers::pi)) {
-    throw_bad_option("max_merge_angle_rad", max_merge_angle_rad, "in [0, pi/4)");
-  }
-}
-
 PlaneLabels extract_topology_planes(const Scan& scan, const TopologyPlaneOptions& options, Monitor& monitor) {
-  options.check();
   if (!scan.topology.known()) {
     throw Error("the scan lines are not known", scan.name, "use the detector for unorganised clouds");
   }

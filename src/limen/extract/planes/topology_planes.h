@@ -4,7 +4,6 @@
 
 #include <cstdint>
 
-#include "limen/base/angles.h"
 #include "limen/base/progress.h"
 #include "limen/extract/planes/plane_labels.h"
 #include "limen/model/scan.h"
@@ -29,13 +28,7 @@ namespace limen {
 struct TopologyPlaneOptions {
   double inlier_threshold_m = 0.0;  ///< 0: 3.3 times the noise found in the scan, between 10 and 40 mm
   int min_inliers = 200;            ///< smallest plane, points, >= 12
-  double max_jump = 4.0;            ///< of neighbours, in units of the local spacing, > 1
-  double reach_m = 0.35;            ///< size of the neighbourhood that samples are drawn from, > 0
-  double confidence = 0.999;        ///< of hitting the smallest plane before giving up, in (0, 1)
-  double max_merge_angle_rad = radians(3.0);  ///< between pieces of one plane, in [0, pi/4)
   std::uint64_t seed = 1;
-
-  void check() const;
 };
 
 /// Planes, most inliers first, and the plane of each point. The scan must have a topology.

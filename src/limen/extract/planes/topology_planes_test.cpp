@@ -174,9 +174,6 @@ TEST(TopologyPlanes, OfFewOrDegeneratePointsAreNone) {
   EXPECT_TRUE(extract_topology_planes(scan).fits.empty());
   for (Vector3d& p : scan.points) p = Vector3d(1.0, 2.0, 3.0);
   EXPECT_TRUE(extract_topology_planes(scan).fits.empty());
-  TopologyPlaneOptions options;
-  options.confidence = 1.0;
-  EXPECT_THROW(extract_topology_planes(scan, options), Error);
 }
 
 TEST(ScanGrid, LinksTrueNeighboursOnly) {
