@@ -21,7 +21,7 @@ namespace limen {
 namespace {
 
 PreparedScan prepare(const BimModel& model, const PrepareOptions& options, Monitor& monitor) {
-  PreparedScan prepared = prepare_model(model, {}, monitor);
+  PreparedScan prepared = prepare_model(model, monitor);
   if (options.sampled_model) prepared.extracted.features.segments = sampled_model_segments(model);
   return prepared;
 }

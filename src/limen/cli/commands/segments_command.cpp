@@ -63,9 +63,7 @@ FoundSegments segments_of(const BimModel& model, const SegmentsCommand& command,
     found.segments = sampled_model_segments(model, sampling, command.segments);
     return found;
   }
-  ModelEdgeOptions exact;
-  exact.min_length_m = command.segments.min_length_m;
-  found.segments = sharp_edges(visible_surface(model).polygons, exact);
+  found.segments = sharp_edges(visible_surface(model).polygons, command.segments.min_length_m);
   return found;
 }
 

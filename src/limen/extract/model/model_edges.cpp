@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <unordered_map>
 
+#include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/progress.h"
 #include "limen/geometry/cell_key.h"
@@ -15,6 +16,8 @@
 namespace limen {
 namespace {
 
+constexpr double kSharpRad = radians(25.0);  // faces that meet at less make no edge: a curved wall's facets
+constexpr double kSameLineM = 0.003;         // edges of two faces within this are one
 constexpr double kCellM = 0.5;
 constexpr double kSameDirection = 0.9998;  // cosine: about 1.1 degrees
 constexpr double kStraightM = 0.0005;      // corners that stand out less are none
@@ -65,8 +68,6 @@ struct EdgeLine {
 /// Sides that run along one line, found by the cells they pass.
 class LineMaker {
  public:
-  explicit LineMaker(double same_line_m) : same_line_m_(same_line_m) {}
-
   void add(const EdgeSide& side) {
     std::size_t line = find(side);
     if (line == lines_.size()) lines_.push_back({side.a, (side.b - side.a).normalized(), {}});
@@ -89,7 +90,7 @@ class LineMaker {
   [[nodiscard]] bool on_line(const EdgeSide& side, const EdgeLine& line) const {
     if (std::abs((side.b - side.a).dot(line.direction)) < kSameDirection * side.length()) return false;
     const auto off = [&](const Vector3d& x) { return (x - line.point).cross(line.direction).norm(); };
-    return off(side.a) <= same_line_m_ && off(side.b) <= same_line_m_;
+    return off(side.a) <= kSameLineM && off(side.b) <= kSameLineM;
   }
 
   [[nodiscard]] std::size_t find(const EdgeSide& side) const {
@@ -105,7 +106,6 @@ class LineMaker {
     return lines_.size();
   }
 
-  double same_line_m_;
   std::vector<EdgeLine> lines_;
   std::unordered_map<std::int64_t, std::vector<std::size_t>> cells_;
 };
@@ -127,7 +127,7 @@ bool sharp(const EdgeLine& line, double from, double to, double min_angle_rad) {
   return false;
 }
 
-void add_segments(const EdgeLine& line, const ModelEdgeOptions& options, std::vector<Segment>& segments) {
+void add_segments(const EdgeLine& line, double min_length_m, std::vector<Segment>& segments) {
   std::vector<double> cuts;
   for (const Stretch& stretch : line.stretches) {
     cuts.push_back(stretch.from);
@@ -137,13 +137,13 @@ void add_segments(const EdgeLine& line, const ModelEdgeOptions& options, std::ve
   double from = 0.0;
   double to = -1.0;
   const auto flush = [&] {
-    if (to - from >= options.min_length_m)
+    if (to - from >= min_length_m)
       segments.push_back({line.point + from * line.direction, line.point + to * line.direction});
     to = from - 1.0;
   };
   for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
     if (cuts[k + 1] - cuts[k] < 1e-9) continue;
-    if (!sharp(line, cuts[k], cuts[k + 1], options.min_angle_rad)) continue;
+    if (!sharp(line, cuts[k], cuts[k + 1], kSharpRad)) continue;
     if (to >= from && cuts[k] - to <= kBridgeM) {
       to = cuts[k + 1];
       continue;
@@ -157,10 +157,9 @@ void add_segments(const EdgeLine& line, const ModelEdgeOptions& options, std::ve
 
 }  // namespace
 
-std::vector<Segment> sharp_edges(const std::vector<PlanarPolygon>& surface, const ModelEdgeOptions& options) {
-  if (!(options.min_length_m > 0)) throw_bad_option("min_length_m", options.min_length_m, "more than 0");
-  if (!(options.same_line_m > 0)) throw_bad_option("same_line_m", options.same_line_m, "more than 0");
-  LineMaker maker(options.same_line_m);
+std::vector<Segment> sharp_edges(const std::vector<PlanarPolygon>& surface, double min_length_m) {
+  if (!(min_length_m > 0)) throw_bad_option("min_length_m", min_length_m, "more than 0");
+  LineMaker maker;
   for (const EdgeSide& side : sides_of(surface)) {
     CancelScope::check();
     maker.add(side);
@@ -168,7 +167,7 @@ std::vector<Segment> sharp_edges(const std::vector<PlanarPolygon>& surface, cons
   std::vector<Segment> segments;
   for (const EdgeLine& line : maker.lines()) {
     CancelScope::check();
-    add_segments(line, options, segments);
+    add_segments(line, min_length_m, segments);
   }
   std::stable_sort(segments.begin(), segments.end(),
                    [](const Segment& a, const Segment& b) { return a.length() > b.length(); });

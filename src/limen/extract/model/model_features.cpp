@@ -12,12 +12,15 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/base/progress.h"
+#include "limen/extract/model/model_edges.h"
+#include "limen/extract/model/model_surface.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {
 namespace {
 
 constexpr int kSubtiles = 4;            // per tile edge: those inside give area and mean
+constexpr double kLeastPlaneM2 = 0.05;  // smaller pieces of surface make edges only
 constexpr float kExact = 1e6F;          // points that a sample of a model is worth
 constexpr double kDrawnSigmaM = 0.005;  // by how much an opening is built otherwise than drawn
 constexpr double kInWallM = 0.01;
@@ -146,25 +149,18 @@ void add_openings(const BimModel& model, Features& features) {
 
 }  // namespace
 
-void ModelFeatureOptions::check() const {
-  surface.check();
-  if (!(min_plane_m2 > 0)) throw_bad_option("min_plane_m2", min_plane_m2, "more than 0");
-  if (!(tile_m > 0)) throw_bad_option("tile_m", tile_m, "more than 0");
-}
-
-ModelFeatures model_features(const BimModel& model, const ModelFeatureOptions& options) {
-  options.check();
-  ModelSurface surface = visible_surface(model, options.surface);
+ModelFeatures model_features(const BimModel& model, double tile_m) {
+  ModelSurface surface = visible_surface(model);
   ModelFeatures made;
   made.features.local_origin = model.local_origin;
-  made.features.segments = sharp_edges(surface.polygons, options.edges);
+  made.features.segments = sharp_edges(surface.polygons);
   for (std::size_t i = 0; i < surface.polygons.size(); ++i) {
-    if (surface.polygons[i].area_m2 < options.min_plane_m2) break;  // largest first
+    if (surface.polygons[i].area_m2 < kLeastPlaneM2) break;  // largest first
     made.features.planes.push_back(std::move(surface.polygons[i]));
     made.elements.push_back(surface.elements[i]);
   }
-  require_few_tiles(options.tile_m, made.features, model.name);
-  add_samples(options.tile_m, made.features);
+  require_few_tiles(tile_m, made.features, model.name);
+  add_samples(tile_m, made.features);
   add_openings(model, made.features);
   return made;
 }

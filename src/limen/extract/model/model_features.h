@@ -2,20 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "limen/extract/model/model_edges.h"
-#include "limen/extract/model/model_surface.h"
+#include "limen/model/bim_model.h"
 #include "limen/model/features.h"
 
 namespace limen {
-
-struct ModelFeatureOptions {
-  ModelSurfaceOptions surface;
-  ModelEdgeOptions edges;
-  double min_plane_m2 = 0.05;  ///< smaller pieces of surface make edges only, > 0
-  double tile_m = 0.25;        ///< edge of the tiles that surface samples stand for, > 0
-
-  void check() const;
-};
 
 /// What a model has of what is found in scans, about the model's local origin: its visible surface as planes
 /// and samples, both rectangles of every opening of its walls, and its sharp edges as segments (2023, IV-A,
@@ -24,6 +14,7 @@ struct ModelFeatures {
   Features features;
   std::vector<std::int32_t> elements;  ///< of each plane: index into BimModel::elements
 };
-ModelFeatures model_features(const BimModel& model, const ModelFeatureOptions& options = {});
+/// `tile_m`: edge of the tiles that surface samples stand for.
+ModelFeatures model_features(const BimModel& model, double tile_m = 0.25);
 
 }  // namespace limen

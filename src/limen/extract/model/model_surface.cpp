@@ -12,7 +12,6 @@
 
 #include <Eigen/Geometry>
 
-#include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/geometry/cell_key.h"
 #include "limen/geometry/cell_lists.h"
@@ -21,6 +20,10 @@
 
 namespace limen {
 namespace {
+
+constexpr double kFrontM = 0.004;                // a solid this near before a face hides it
+constexpr double kSamePlaneM = 0.002;            // faces of several elements within this are one plane
+constexpr double kLeastPieceOfSurfaceM2 = 0.01;  // smaller pieces are left out
 
 using Box = Eigen::AlignedBox3d;
 
@@ -105,13 +108,13 @@ class BodyGrid {
 };
 
 /// Where other elements touch the face, in the face's coordinates.
-std::vector<Polygon> bodies_before(const BimFace& face, const std::vector<Body>& bodies, const BodyGrid& grid,
-                                   double front_m) {
+std::vector<Polygon> bodies_before(const BimFace& face, const std::vector<Body>& bodies,
+                                   const BodyGrid& grid) {
   Box box = box_of(face);
-  box.min().array() -= 2.0 * front_m;
-  box.max().array() += 2.0 * front_m;
+  box.min().array() -= 2.0 * kFrontM;
+  box.max().array() += 2.0 * kFrontM;
   PlaneFrame front = face.frame;
-  front.origin += front_m * face.plane.normal;
+  front.origin += kFrontM * face.plane.normal;
   std::vector<Polygon> covered;
   for (const std::size_t k : grid.meeting(box)) {
     if (static_cast<std::int32_t>(k) == face.element) continue;
@@ -127,7 +130,7 @@ struct Rest {
   std::vector<Polygon> parts;
 };
 
-std::vector<Rest> uncovered(const BimModel& model, const ModelSurfaceOptions& options) {
+std::vector<Rest> uncovered(const BimModel& model) {
   const std::vector<Body> bodies = bodies_of(model);
   const BodyGrid grid(bodies);
   std::vector<Rest> rests(model.faces.size());
@@ -135,7 +138,7 @@ std::vector<Rest> uncovered(const BimModel& model, const ModelSurfaceOptions& op
     for (std::size_t i = begin; i < end; ++i) {
       const BimFace& face = model.faces[i];
       if (bodies[static_cast<std::size_t>(face.element)].faces.empty()) continue;
-      const std::vector<Polygon> covered = bodies_before(face, bodies, grid, options.front_m);
+      const std::vector<Polygon> covered = bodies_before(face, bodies, grid);
       rests[i].face = &face;
       rests[i].parts =
           covered.empty() ? std::vector<Polygon>{face.outline} : difference({face.outline}, covered);
@@ -155,8 +158,6 @@ struct Sheet {
 /// Groups faces by plane: found by the cells of normal and offset around.
 class SheetMaker {
  public:
-  explicit SheetMaker(double same_plane_m) : same_plane_m_(same_plane_m) {}
-
   void add(const Rest& rest) {
     const BimFace& face = *rest.face;
     const auto [x, y, z] = cell_of(face.plane.normal);
@@ -187,7 +188,7 @@ class SheetMaker {
   [[nodiscard]] bool lies_in(const BimFace& face, const Sheet& sheet) const {
     if (face.plane.normal.dot(sheet.plane.normal) < 0.9999) return false;
     return std::all_of(face.outline.outer.begin(), face.outline.outer.end(), [&](const Vector2d& p) {
-      return std::abs(sheet.plane.signed_distance(face.frame.to_space(p))) <= same_plane_m_;
+      return std::abs(sheet.plane.signed_distance(face.frame.to_space(p))) <= kSamePlaneM;
     });
   }
 
@@ -205,7 +206,6 @@ class SheetMaker {
     return false;
   }
 
-  double same_plane_m_;
   std::vector<Sheet> sheets_;
   std::map<Cell, std::multimap<double, std::size_t>> by_cell_;
 };
@@ -243,7 +243,7 @@ std::int32_t owner_of(const Polygon& part, const std::vector<MovedRest>& moved, 
   return owner;
 }
 
-ModelSurface surface_of_sheet(const Sheet& sheet, double min_area_m2) {
+ModelSurface surface_of_sheet(const Sheet& sheet) {
   ModelSurface surface;
   std::vector<MovedRest> moved;
   std::vector<Polygon> all;
@@ -255,7 +255,7 @@ ModelSurface surface_of_sheet(const Sheet& sheet, double min_area_m2) {
   }
   if (sheet.rests.size() > 1 || all.size() > 1) all = merged(all);
   for (Polygon& part : all) {
-    if (area(part) < min_area_m2) continue;
+    if (area(part) < kLeastPieceOfSurfaceM2) continue;
     const bool alone = sheet.rests.size() == 1;
     surface.elements.push_back(alone ? sheet.rests.front()->face->element : owner_of(part, moved, sheet));
     surface.polygons.push_back(polygon_of(sheet, std::move(part)));
@@ -264,12 +264,6 @@ ModelSurface surface_of_sheet(const Sheet& sheet, double min_area_m2) {
 }
 
 }  // namespace
-
-void ModelSurfaceOptions::check() const {
-  if (!(front_m > 0)) throw_bad_option("front_m", front_m, "more than 0");
-  if (!(same_plane_m > 0)) throw_bad_option("same_plane_m", same_plane_m, "more than 0");
-  if (!(min_area_m2 >= 0)) throw_bad_option("min_area_m2", min_area_m2, "0 or more");
-}
 
 BuiltElements::BuiltElements(const BimModel& model)
     : no_kinds_(std::all_of(model.elements.begin(), model.elements.end(),
@@ -293,20 +287,19 @@ bool BuiltElements::operator()(const BimElement& element) const {
   }
 }
 
-ModelSurface visible_surface(const BimModel& model, const ModelSurfaceOptions& options) {
-  options.check();
+ModelSurface visible_surface(const BimModel& model) {
   require_plausible_size(model);
-  const std::vector<Rest> rests = uncovered(model, options);
+  const std::vector<Rest> rests = uncovered(model);
   std::vector<const Rest*> order;
   for (const Rest& rest : rests) order.push_back(&rest);
   std::stable_sort(order.begin(), order.end(),
                    [](const Rest* a, const Rest* b) { return a->face->area_m2 > b->face->area_m2; });
-  SheetMaker maker(options.same_plane_m);
+  SheetMaker maker;
   for (const Rest* rest : order) maker.add(*rest);
   const std::vector<Sheet>& sheets = maker.sheets();
   std::vector<ModelSurface> of_sheets(sheets.size());
   parallel_for(sheets.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) of_sheets[i] = surface_of_sheet(sheets[i], options.min_area_m2);
+    for (std::size_t i = begin; i < end; ++i) of_sheets[i] = surface_of_sheet(sheets[i]);
   });
   ModelSurface all;
   for (ModelSurface& of_sheet : of_sheets) {

@@ -14,14 +14,6 @@ namespace limen {
 std::vector<Polygon> cross_section(const std::vector<const BimFace*>& faces, const PlaneFrame& frame,
                                    double tolerance_m = 0.002);
 
-struct ModelSurfaceOptions {
-  double front_m = 0.004;       ///< a solid this near before a face hides it, > 0
-  double same_plane_m = 0.002;  ///< faces of several elements within this are one plane, > 0
-  double min_area_m2 = 0.01;    ///< smaller pieces are left out, >= 0
-
-  void check() const;
-};
-
 /// Whether a laser is stopped there today as on the day the model was drawn: walls, slabs, roofs, columns,
 /// beams, stairs, coverings, terrain. Not: panes, leaves, furniture, railings, and elements of no known kind,
 /// unless the file knows no kinds at all.
@@ -45,6 +37,6 @@ struct ModelSurface {
   std::vector<std::int32_t> elements;   ///< of each polygon: the element that gives most of it
 };
 /// Throws Error where the model cannot be a building in metres (require_plausible_size()).
-ModelSurface visible_surface(const BimModel& model, const ModelSurfaceOptions& options = {});
+ModelSurface visible_surface(const BimModel& model);
 
 }  // namespace limen

@@ -99,12 +99,6 @@ TEST(VisibleSurface, WindowsAndFurnitureAreNotBuilt) {
   EXPECT_DOUBLE_EQ(total_area(visible_surface(model)), bare);
 }
 
-TEST(VisibleSurface, RefusesBadOptions) {
-  ModelSurfaceOptions options;
-  options.front_m = 0.0;
-  EXPECT_THROW(visible_surface(BimModel(), options), Error);
-}
-
 TEST(SharpEdges, RoomsHaveTwelveEdgesInsideEach) {
   const ModelSurface surface = visible_surface(row_of_rooms({5.0, 3.0}));
   // Outside: a box of 8.6 x 4.4 x 3.4; inside: two of 4 x 3 and 5 or 3.
@@ -196,9 +190,7 @@ TEST(VisibleSurface, RefusesAModelInMillimetres) {
 TEST(ModelFeatures, AreBoundedByTheSurfaceTheyStandFor) {
   BimModel model;
   add_box(model, BimKind::slab, {0, 0, 0}, {100, 100, 0.2});
-  ModelFeatureOptions options;
-  options.tile_m = 0.001;  // 2e10 tiles
-  EXPECT_THROW((void)model_features(model, options), Error);
+  EXPECT_THROW((void)model_features(model, 0.001), Error);  // 2e10 tiles
   // A thin strip across a large box has few tiles, and its row is not walked from end to end of the box.
   BimModel diagonal;
   diagonal.elements.push_back({BimKind::wall, "IfcWall", "", "", "", 0});

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/extract/model/sample_model.h"
 
-#include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
@@ -16,6 +15,9 @@
 
 namespace limen {
 namespace {
+
+constexpr double kTrialsPerPlace = 6.0;  // points tried per place that one could have
+constexpr double kMostDarts = 2e7;       // points tried; more: Error
 
 /// Points that keep their distance, in cubes as wide as that: only neighbouring cubes have to be asked.
 class Disks {
@@ -73,25 +75,19 @@ void throw_darts(const PlanarPolygon& polygon, double per_m2, RandomStream rando
 
 }  // namespace
 
-void ModelSamplingOptions::check() const {
-  if (!(spacing_m > 0)) throw_bad_option("spacing_m", spacing_m, "more than 0");
-  if (!(trials > 0)) throw_bad_option("trials", trials, "more than 0");
-}
-
 Scan sample_model(const BimModel& model, const ModelSamplingOptions& options) {
-  options.check();
   const ModelSurface surface = visible_surface(model);
-  const double per_m2 = options.trials / (options.spacing_m * options.spacing_m);
+  const double per_m2 = kTrialsPerPlace / (options.spacing_m * options.spacing_m);
   double darts = 0.0;
   for (const PlanarPolygon& polygon : surface.polygons) {
     const Box2 box = box_of(polygon.parts);
     darts += per_m2 * (box.high - box.low).prod();
   }
-  if (darts > static_cast<double>(options.most)) {
-    throw Error(fmt::format("points at a spacing of {} m are too many for its surface", options.spacing_m),
-                model.name,
-                fmt::format("give a spacing of {:.2f} m or more",
-                            options.spacing_m * std::sqrt(darts / static_cast<double>(options.most))));
+  if (darts > kMostDarts) {
+    throw Error(
+        fmt::format("points at a spacing of {} m are too many for its surface", options.spacing_m),
+        model.name,
+        fmt::format("give a spacing of {:.2f} m or more", options.spacing_m * std::sqrt(darts / kMostDarts)));
   }
   Disks disks(options.spacing_m);
   for (std::size_t i = 0; i < surface.polygons.size(); ++i)

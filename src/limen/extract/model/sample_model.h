@@ -19,11 +19,7 @@ namespace limen {
 
 struct ModelSamplingOptions {
   double spacing_m = 0.04;  ///< no two points are nearer than this, > 0
-  double trials = 6.0;      ///< points tried per place that one could have, > 0
   std::uint64_t seed = 1;
-  std::size_t most = 20000000;  ///< points tried; more: Error
-
-  void check() const;
 };
 
 /// Points on the visible surface of a model, none nearer than the spacing to another, hardly anywhere room

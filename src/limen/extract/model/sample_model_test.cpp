@@ -19,7 +19,6 @@ TEST(SampleModel, PointsKeepTheirDistanceAndLeaveNoRoom) {
   add_box(model, BimKind::slab, {0, 0, 0}, {2, 1, 0.5});
   ModelSamplingOptions options;
   options.spacing_m = 0.05;
-  options.trials = 30.0;
   const Scan scan = sample_model(model, options);
   for (std::size_t i = 0; i < scan.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) ASSERT_GE((scan.points[i] - scan.points[k]).norm(), 0.05);

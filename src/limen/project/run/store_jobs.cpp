@@ -128,7 +128,7 @@ FileRecord make_scan_features(const ProjectFile& file, const ProjectOptions& opt
 FileRecord make_model_features(const ProjectFile& file, const Store& store, Monitor& monitor) {
   const BimModel model = read_bim(file.path, monitor);
   require_unchanged(file);
-  const PreparedScan prepared = prepare_model(model, {}, monitor);
+  const PreparedScan prepared = prepare_model(model, monitor);
   into_store([&] { store.save_features(store.feature_key(file.key(), 0), prepared); });
   return {{0}, without_name(model.warnings, file.path)};
 }

@@ -7,7 +7,6 @@
 #include "limen/base/random.h"
 #include "limen/geometry/rigid.h"
 #include "limen/model/result.h"
-#include "limen/register/prepare/prepare_group.h"
 #include "limen/register/prepare/prepare_model.h"
 #include "limen/register/register.h"
 #include "limen/simulate/model/bim_recipe.h"
@@ -28,7 +27,7 @@ struct Furnished {
     options.as_built.on = true;
     options.as_built.hidden_wall_share = 0.5;
     made = simulate_bim(office, options);
-    model = prepare_model(office, {}, silent_monitor());
+    model = prepare_model(office);
   }
 };
 

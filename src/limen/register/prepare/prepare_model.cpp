@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "limen/base/error.h"
+#include "limen/extract/model/model_features.h"
 #include "limen/sight/model_space.h"
 
 namespace limen {
@@ -36,9 +37,9 @@ std::string room_at(const std::vector<BimSpace>& rooms, const Vector3d& at) {
   return {};
 }
 
-PreparedScan prepare_model(const BimModel& model, const ModelFeatureOptions& options, Monitor& monitor) {
+PreparedScan prepare_model(const BimModel& model, Monitor& monitor) {
   PreparedScan prepared;
-  ModelFeatures made = model_features(model, options);
+  ModelFeatures made = model_features(model);
   prepared.extracted.features = std::move(made.features);
   // Nobody levels ground as it was drawn, and the street goes on beyond it: a ray from a window that passes
   // through it tells nothing. What a scan has of ground still finds it in the model.

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "limen/extract/model/model_features.h"
 #include "limen/model/bim_model.h"
 #include "limen/register/prepare/prepare_scan.h"
 
@@ -16,7 +15,6 @@ std::string room_at(const std::vector<BimSpace>& rooms, const Vector3d& at);
 
 /// A model made ready for registration, as a scan is: its visible surface, openings and edges, its surfaces
 /// as a view of space, and its rooms by name. `labels` stay empty.
-PreparedScan prepare_model(const BimModel& model, const ModelFeatureOptions& options = {},
-                           Monitor& monitor = silent_monitor());
+PreparedScan prepare_model(const BimModel& model, Monitor& monitor = silent_monitor());
 
 }  // namespace limen
