@@ -244,10 +244,7 @@ std::vector<DetectedEdge> find_edges(const Scan& scan, const ExtractedFeatures& 
         find_borders({scan, more, images, creases.ambiguous}, options, monitor);
     edges.insert(edges.end(), borders.begin(), borders.end());
   }
-  MergeOptions merge;
-  merge.join_gap_m = options.join_gap_m;
-  merge.min_length_m = options.min_length_m;
-  edges = merged_edges(std::move(edges), merge);
+  edges = merged_edges(std::move(edges), options.join_gap_m, options.min_length_m);
   const auto planes = static_cast<std::int32_t>(extracted.features.planes.size());
   for (DetectedEdge& edge : edges)
     for (std::int32_t& plane : edge.planes)

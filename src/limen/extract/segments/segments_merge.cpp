@@ -16,6 +16,10 @@ namespace {
 
 using MergedInterval = std::pair<double, double>;
 
+constexpr double kBesideCreaseM = 0.015;  // a border this near to a crease is the crease
+constexpr double kOneEdgeM = 0.012;       // edges of one kind this near to one another are one
+constexpr double kOneEdgeDeg = 4.0;       // between two edges that are one
+constexpr double kCornerM = 0.08;         // an end this near to a corner with another edge is drawn up to it
 constexpr double kUnsure = 2.5;  // a border may be this many of its standard deviations off its own crease
 
 /// Edges found by the cubes they pass.
@@ -98,9 +102,9 @@ bool longer(const DetectedEdge& a, const DetectedEdge& b) {
 }
 
 /// Each edge without what better ones cover.
-std::vector<DetectedEdge> without_doubles(std::vector<DetectedEdge> edges, const MergeOptions& options) {
+std::vector<DetectedEdge> without_doubles(std::vector<DetectedEdge> edges, double min_length_m) {
   std::stable_sort(edges.begin(), edges.end(), better);
-  const double cosine = std::cos(radians(options.max_angle_deg));
+  const double cosine = std::cos(radians(kOneEdgeDeg));
   std::vector<DetectedEdge> kept;
   EdgeIndex index;
   for (const DetectedEdge& edge : edges) {
@@ -109,13 +113,13 @@ std::vector<DetectedEdge> without_doubles(std::vector<DetectedEdge> edges, const
       const bool beside = edge.kind == EdgeKind::border && kept[k].kind == EdgeKind::crease;
       const bool of_it = kept[k].planes[0] == edge.planes[0] || kept[k].planes[1] == edge.planes[0];
       const double unsure = of_it ? kUnsure * edge.sigma_m : 0.0;
-      const double reach = beside ? options.beside_m + unsure : options.same_m;
+      const double reach = beside ? kBesideCreaseM + unsure : kOneEdgeM;
       const MergedInterval part = covered_part(edge.segment, kept[k].segment, reach, cosine);
       if (part.second > part.first) taken.push_back(part);
     }
     const Vector3d along = edge.segment.direction();
     for (const MergedInterval& part : rest_of(edge.segment.length(), std::move(taken))) {
-      if (part.second - part.first < options.min_length_m) continue;
+      if (part.second - part.first < min_length_m) continue;
       DetectedEdge piece = edge;
       piece.segment = {edge.segment.a + part.first * along, edge.segment.a + part.second * along};
       index.add(piece.segment, kept.size());
@@ -126,7 +130,7 @@ std::vector<DetectedEdge> without_doubles(std::vector<DetectedEdge> edges, const
 }
 
 /// The two as one, on the line of the longer one; whether they are pieces of one line.
-bool join(DetectedEdge& edge, const DetectedEdge& other, const MergeOptions& options) {
+bool join(DetectedEdge& edge, const DetectedEdge& other, double gap_m) {
   constexpr double kMaxAngleDeg = 1.0;
   constexpr double kMaxOff_m = 0.006;
   if (edge.kind != other.kind) return false;
@@ -139,14 +143,14 @@ bool join(DetectedEdge& edge, const DetectedEdge& other, const MergeOptions& opt
   if ((to_a - t0 * along).norm() > kMaxOff_m || (to_b - t1 * along).norm() > 2.0 * kMaxOff_m) return false;
   if (t0 > t1) std::swap(t0, t1);
   const double length = edge.segment.length();
-  if (t0 > length + options.join_gap_m || t1 < -options.join_gap_m) return false;
+  if (t0 > length + gap_m || t1 < -gap_m) return false;
   const Vector3d a = edge.segment.a;
   edge.segment = {a + std::min(0.0, t0) * along, a + std::max(length, t1) * along};
   return true;
 }
 
 /// Pieces of one line become one.
-std::vector<DetectedEdge> joined(std::vector<DetectedEdge> edges, const MergeOptions& options) {
+std::vector<DetectedEdge> joined(std::vector<DetectedEdge> edges, double gap_m) {
   std::stable_sort(edges.begin(), edges.end(), longer);
   EdgeIndex index;
   for (std::size_t k = 0; k < edges.size(); ++k) index.add(edges[k].segment, k);
@@ -157,9 +161,9 @@ std::vector<DetectedEdge> joined(std::vector<DetectedEdge> edges, const MergeOpt
     DetectedEdge edge = edges[k];
     for (bool grew = true; grew;) {
       grew = false;
-      const Vector3d reach = options.join_gap_m * edge.segment.direction();
+      const Vector3d reach = gap_m * edge.segment.direction();
       for (const std::size_t other : index.near({edge.segment.a - reach, edge.segment.b + reach})) {
-        if (other <= k || used[other] != 0 || !join(edge, edges[other], options)) continue;
+        if (other <= k || used[other] != 0 || !join(edge, edges[other], gap_m)) continue;
         used[other] = 1;
         grew = true;
       }
@@ -172,7 +176,7 @@ std::vector<DetectedEdge> joined(std::vector<DetectedEdge> edges, const MergeOpt
 
 /// Where the line of `edge` passes the line of `other`, as a length from edge.a; a length far away where they
 /// do not come near one another.
-double passing_place(const Segment& edge, const Segment& other, double near_m) {
+double passing_place(const Segment& edge, const Segment& other) {
   constexpr double kNowhere = 1e9;
   const Vector3d u = edge.direction();
   const Vector3d v = other.direction();
@@ -182,45 +186,42 @@ double passing_place(const Segment& edge, const Segment& other, double near_m) {
   const Vector3d off = other.a - edge.a;
   const double t = (off.dot(u) - cosine * off.dot(v)) / sine2;
   const double s = (cosine * off.dot(u) - off.dot(v)) / sine2;
-  if ((edge.a + t * u - other.a - s * v).norm() > near_m) return kNowhere;
+  if ((edge.a + t * u - other.a - s * v).norm() > kOneEdgeM) return kNowhere;
   // The other one need not reach the corner either.
   constexpr double kShort_m = 0.1;
   return s < -kShort_m || s > other.length() + kShort_m ? kNowhere : t;
 }
 
 /// Ends that stop short of a corner, where another edge passes, are drawn up to it.
-void draw_to_corners(std::vector<DetectedEdge>& edges, const MergeOptions& options) {
+void draw_to_corners(std::vector<DetectedEdge>& edges) {
   EdgeIndex index;
   for (std::size_t k = 0; k < edges.size(); ++k) index.add(edges[k].segment, k);
   const std::vector<DetectedEdge> before = edges;
   for (std::size_t k = 0; k < edges.size(); ++k) {
     const Segment& edge = before[k].segment;
-    double begin = options.corner_m;
-    double end = options.corner_m;
+    double begin = kCornerM;
+    double end = kCornerM;
     for (const std::size_t other : index.near(edge)) {
       if (other == k) continue;
-      const double t = passing_place(edge, before[other].segment, options.same_m);
+      const double t = passing_place(edge, before[other].segment);
       if (t <= 0.0) begin = std::min(begin, -t);
       if (t >= edge.length()) end = std::min(end, t - edge.length());
     }
     const Vector3d along = edge.direction();
-    if (begin < options.corner_m) edges[k].segment.a = edge.a - begin * along;
-    if (end < options.corner_m) edges[k].segment.b = edge.b + end * along;
+    if (begin < kCornerM) edges[k].segment.a = edge.a - begin * along;
+    if (end < kCornerM) edges[k].segment.b = edge.b + end * along;
   }
 }
 
 }  // namespace
 
-std::vector<DetectedEdge> merged_edges(std::vector<DetectedEdge> edges, const MergeOptions& options) {
+std::vector<DetectedEdge> merged_edges(std::vector<DetectedEdge> edges, double join_gap_m,
+                                       double min_length_m) {
   // Short pieces may still become part of a line: they are dropped last.
-  MergeOptions pieces = options;
-  pieces.min_length_m = 0.25 * options.min_length_m;
-  std::vector<DetectedEdge> merged = joined(without_doubles(std::move(edges), pieces), options);
-  merged.erase(
-      std::remove_if(merged.begin(), merged.end(),
-                     [&](const DetectedEdge& edge) { return edge.segment.length() < options.min_length_m; }),
-      merged.end());
-  draw_to_corners(merged, options);
+  std::vector<DetectedEdge> merged =
+      joined(without_doubles(std::move(edges), 0.25 * min_length_m), join_gap_m);
+  std::erase_if(merged, [&](const DetectedEdge& edge) { return edge.segment.length() < min_length_m; });
+  draw_to_corners(merged);
   std::stable_sort(merged.begin(), merged.end(), longer);
   return merged;
 }

@@ -255,7 +255,7 @@ TEST(SegmentMerge, ABorderBesideACreaseIsTheCrease) {
   DetectedEdge border;
   border.kind = EdgeKind::border;
   border.segment = {Vector3d(0.5, 0.008, 0), Vector3d(3, 0.008, 0)};
-  const std::vector<DetectedEdge> merged = merged_edges({border, crease}, {});
+  const std::vector<DetectedEdge> merged = merged_edges({border, crease}, 0.15, 0.2);
   ASSERT_EQ(merged.size(), 2U);
   EXPECT_EQ(merged[0].kind, EdgeKind::crease);
   EXPECT_NEAR(merged[1].segment.length(), 1.0, 1e-9);
@@ -268,7 +268,7 @@ TEST(SegmentMerge, PiecesOfOneLineAreJoinedAcrossSmallGapsOnly) {
   second.segment = {Vector3d(1.1, 0.001, 0), Vector3d(2, 0.001, 0)};
   DetectedEdge third = first;
   third.segment = {Vector3d(2.5, 0, 0), Vector3d(3, 0, 0)};
-  const std::vector<DetectedEdge> merged = merged_edges({first, second, third}, {});
+  const std::vector<DetectedEdge> merged = merged_edges({first, second, third}, 0.15, 0.2);
   ASSERT_EQ(merged.size(), 2U);
   EXPECT_NEAR(merged[0].segment.length(), 2.0, 1e-3);
   EXPECT_NEAR(merged[1].segment.length(), 0.5, 1e-9);
@@ -279,7 +279,7 @@ TEST(SegmentMerge, EndsAreDrawnToACorner) {
   first.segment = {Vector3d(0.05, 0, 0), Vector3d(1, 0, 0)};
   DetectedEdge second;
   second.segment = {Vector3d(0, 0.03, 0), Vector3d(0, 1, 0)};
-  const std::vector<DetectedEdge> merged = merged_edges({first, second}, {});
+  const std::vector<DetectedEdge> merged = merged_edges({first, second}, 0.15, 0.2);
   ASSERT_EQ(merged.size(), 2U);
   for (const DetectedEdge& edge : merged) EXPECT_NEAR(edge.segment.a.norm(), 0.0, 1e-9);
 }

@@ -6,13 +6,16 @@
 #include <cmath>
 #include <tuple>
 
-#include "limen/base/error.h"
 #include "limen/geometry/linear.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {
 namespace {
 
+constexpr double kDetailM =
+    0.10;  // edge of the cubes whose points make one piece; twice that where they are few
+constexpr std::size_t kLeastOfDetail = 8;   // points of a piece
+constexpr std::size_t kMostDetails = 4000;  // of a scan, evenly chosen
 constexpr double kBuiltLengthM = 2.1;
 constexpr double kBuiltArea_m2 = 3.0;
 constexpr double kFlatter = 2.0;  // a piece is wider, both ways, than so many times its scatter
@@ -69,7 +72,7 @@ std::vector<Placed> placed_points(const Scan& scan, const std::vector<std::uint3
 
 /// The piece that the points [first, last) make.
 SurfaceDetail piece_of(const Scan& scan, const std::vector<PlanarPolygon>& planes, const Placed* first,
-                       const Placed* last, double edge_m, const DetailOptions& options) {
+                       const Placed* last, double edge_m, double max_scatter_m) {
   const auto count = static_cast<double>(last - first);
   Vector3d mean = Vector3d::Zero();
   for (const Placed* it = first; it != last; ++it) mean += scan.points[it->point];
@@ -87,8 +90,8 @@ SurfaceDetail piece_of(const Scan& scan, const std::vector<PlanarPolygon>& plane
   const double cell_m2 = edge_m * edge_m;
   piece.area_m2 =
       static_cast<float>(std::clamp(12.0 * deviation[1] * deviation[2], 0.1 * cell_m2, 2.0 * cell_m2));
-  const bool flat = deviation[0] <= options.max_scatter_m &&
-                    deviation[1] >= std::max(kLeastWidthM, kFlatter * deviation[0]);
+  const bool flat =
+      deviation[0] <= max_scatter_m && deviation[1] >= std::max(kLeastWidthM, kFlatter * deviation[0]);
   if (!flat) return piece;
   // All points of a plane together know its normal better.
   piece.normal = first->plane < 0 ? Vector3d(spectrum.vectors.col(0))
@@ -100,13 +103,6 @@ SurfaceDetail piece_of(const Scan& scan, const std::vector<PlanarPolygon>& plane
 
 }  // namespace
 
-void DetailOptions::check() const {
-  if (!(cell_m > 0)) throw_bad_option("cell_m", cell_m, "more than 0");
-  if (min_points < 4) throw_bad_option("min_points", static_cast<double>(min_points), "4 or more");
-  if (!(max_scatter_m > 0)) throw_bad_option("max_scatter_m", max_scatter_m, "more than 0");
-  if (most_pieces < 1) throw_bad_option("most_pieces", static_cast<double>(most_pieces), "1 or more");
-}
-
 bool of_building(const PlanarPolygon& plane) {
   const Box2 box = box_of(plane.parts);
   if (box.empty()) return false;
@@ -115,11 +111,10 @@ bool of_building(const PlanarPolygon& plane) {
 
 std::vector<SurfaceDetail> find_surface_details(const Scan& scan, const std::vector<std::int32_t>& labels,
                                                 const std::vector<PlanarPolygon>& planes,
-                                                const DetailOptions& options) {
-  options.check();
+                                                double max_scatter_m) {
   std::vector<SurfaceDetail> pieces;
   std::vector<std::uint32_t> points = points_of_things(labels, planes);
-  for (const double edge_m : {options.cell_m, 2.0 * options.cell_m}) {
+  for (const double edge_m : {kDetailM, 2.0 * kDetailM}) {
     const std::vector<Placed> placed = placed_points(scan, points, labels, planes, edge_m);
     points.clear();
     for (std::size_t first = 0; first < placed.size();) {
@@ -127,9 +122,9 @@ std::vector<SurfaceDetail> find_surface_details(const Scan& scan, const std::vec
       while (last < placed.size() && placed[last].cube == placed[first].cube &&
              placed[last].plane == placed[first].plane)
         ++last;
-      if (last - first >= options.min_points) {
+      if (last - first >= kLeastOfDetail) {
         pieces.push_back(
-            piece_of(scan, planes, placed.data() + first, placed.data() + last, edge_m, options));
+            piece_of(scan, planes, placed.data() + first, placed.data() + last, edge_m, max_scatter_m));
       } else {
         for (std::size_t k = first; k < last; ++k) points.push_back(placed[k].point);
       }
@@ -137,7 +132,7 @@ std::vector<SurfaceDetail> find_surface_details(const Scan& scan, const std::vec
     }
   }
   if (pieces.empty()) return pieces;
-  const std::size_t stride = 1 + (pieces.size() - 1) / options.most_pieces;
+  const std::size_t stride = 1 + (pieces.size() - 1) / kMostDetails;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < pieces.size(); i += stride) pieces[kept++] = pieces[i];
   pieces.resize(kept);

@@ -23,23 +23,15 @@ struct SurfaceDetail {
   [[nodiscard]] bool flat() const { return !normal.isZero(); }
 };
 
-struct DetailOptions {
-  double cell_m = 0.10;  ///< edge of the cubes whose points make one piece; twice that where points are few
-  std::size_t min_points = 8;      ///< of a piece
-  double max_scatter_m = 0.005;    ///< across a flat piece; edges and rounder things are not flat
-  std::size_t most_pieces = 4000;  ///< of a scan, evenly chosen
-
-  void check() const;
-};
-
 /// Whether a plane is the building's by its size: walls, even a strip of one between two windows, are longer
 /// than furniture is high. A table or a bed that is taken for a wall is evidence lost, not evidence forged.
 bool of_building(const PlanarPolygon& plane);
 
 /// The pieces that the points of a scan make that lie on no plane of the building. `labels[i]` is the plane
-/// of point i, or -1.
+/// of point i, or -1. Across a flat piece its points scatter by up to `max_scatter_m`; edges and rounder
+/// things are not flat.
 std::vector<SurfaceDetail> find_surface_details(const Scan& scan, const std::vector<std::int32_t>& labels,
                                                 const std::vector<PlanarPolygon>& planes,
-                                                const DetailOptions& options = {});
+                                                double max_scatter_m = 0.005);
 
 }  // namespace limen

@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "limen/base/error.h"
 #include "limen/base/random.h"
 #include "limen/geometry/random_vectors.h"
 
@@ -63,18 +62,6 @@ TEST(SurfaceDetails, PlanesOfTheBuildingGiveNone) {
   const std::vector<SurfaceDetail> board = find_surface_details(scan, labels, {wall});
   EXPECT_TRUE(
       std::any_of(board.begin(), board.end(), [](const auto& detail) { return detail.mean.x() > 0; }));
-}
-
-TEST(SurfaceDetails, AsManyAsAskedAtMostAndBoundsAreNamed) {
-  const Scan scan = box_and_ball();
-  const std::vector<std::int32_t> labels(scan.size(), -1);
-  DetailOptions options;
-  options.most_pieces = 7;
-  const std::vector<SurfaceDetail> few = find_surface_details(scan, labels, {}, options);
-  EXPECT_LE(few.size(), 7U);
-  EXPECT_GE(few.size(), 4U);
-  options.cell_m = 0.0;
-  EXPECT_THROW(find_surface_details(scan, labels, {}, options), Error);
 }
 
 }  // namespace

@@ -132,14 +132,13 @@ constexpr double kFramed = 0.1;  // shares of the work, about, by which progress
 constexpr double kExtracted = 0.75;
 constexpr double kSpaceKnown = 0.85;
 constexpr double kFlatNoise = 1.6;  // noise, and what its estimate is off
+constexpr double kFlattestM = 0.005;
 constexpr double kRoundestM = 0.015;
 constexpr double kReachM = 0.3;  // beyond the samples
 
-/// What is flat but for the noise.
-DetailOptions details_for(double noise_m) {
-  DetailOptions options;
-  options.max_scatter_m = std::clamp(kFlatNoise * noise_m, options.max_scatter_m, kRoundestM);
-  return options;
+/// Up to which scatter a piece is flat but for the noise.
+double flat_scatter(double noise_m) {
+  return std::clamp(kFlatNoise * noise_m, kFlattestM, kRoundestM);
 }
 
 /// What rays of the scan passed and met.
@@ -165,7 +164,7 @@ void look_around(const Scan& laid, const PrepareOptions& options, PreparedScan& 
           prepared.space = space_of(laid, prepared.extracted);
           if (!laid.mobile())
             prepared.details = find_surface_details(laid, prepared.extracted.labels, features.planes,
-                                                    details_for(features.noise_m));
+                                                    flat_scatter(features.noise_m));
         });
     features.openings = std::move(openings);
   }
