@@ -185,11 +185,9 @@ ViewSide side_of_cloud(const ViewInput& input, const CloudToView& cloud, Scan sc
   pictured.features.local_origin = origin;
   RegisterInput placed;
   placed.scans.push_back({std::move(scan), place_of_scan(input)});
-  ReportSceneOptions all;
-  all.max_points = cloud.points;
   ViewSide side;
   side.points_read = cloud.points;
-  side.scene = with_picture(scene_side(placed, all), pictured);
+  side.scene = with_picture(scene_side(placed, cloud.points), pictured);
   return side;
 }
 

@@ -11,7 +11,6 @@
 
 #include <fmt/format.h>
 
-#include "limen/base/error.h"
 #include "limen/base/text.h"
 #include "limen/register/judge/as_built.h"
 
@@ -222,14 +221,6 @@ constexpr double kMostlyOther = 0.6;  // share agreeing below which the things a
 
 }  // namespace
 
-void LookAlikeOptions::check() const {
-  const std::pair<const char*, double> odds[] = {
-      {"otherwise", otherwise}, {"otherwise_behind_wall", otherwise_behind_wall}, {"alike", alike}};
-  for (const auto& [name, value] : odds) {
-    if (!(value >= 0)) throw_bad_option(name, value, "0 or more");
-  }
-}
-
 LookAlikeOptions look_alike_options(bool nothing_repeats) {
   constexpr double kWordsWrong = 0.05;
   LookAlikeOptions options;
@@ -240,7 +231,6 @@ LookAlikeOptions look_alike_options(bool nothing_repeats) {
 }
 
 LookAlikeEvidence weigh_look_alike(const SeenClutter& clutter, const LookAlikeOptions& options) {
-  options.check();
   LookAlikeEvidence evidence;
   evidence.alike = options.alike;
   evidence.otherwise = clutter.behind_wall ? options.otherwise_behind_wall : options.otherwise;

@@ -18,8 +18,6 @@ struct LookAlikeOptions {
   double otherwise_behind_wall =
       evidence_table::kOtherwiseBehindWall;  ///< ... where a wall is between the stations
   double alike = evidence_table::kAlike;     ///< that is furnished alike as well
-
-  void check() const;
 };
 
 /// Those of a registration. Where a user says that no room, flat or storey of the building was built like

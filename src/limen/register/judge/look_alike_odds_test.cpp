@@ -9,9 +9,6 @@
 
 #include <gtest/gtest.h>
 
-#include "limen/base/error.h"
-#include "limen/register/judge/verdict.h"
-
 namespace limen {
 namespace {
 
@@ -173,12 +170,6 @@ TEST(LookAlikeOdds, PiecesOfOneFaceAreOneObservation) {
 TEST(LookAlikeOdds, WhatThingsMeetAnywayTellsLess) {
   EXPECT_GT(probability_of_look_alike(seen({6, 1.0}, faces(4, 0.002), 0.5)),
             probability_of_look_alike(seen({6, 1.0}, faces(4, 0.002), 0.02)));
-}
-
-TEST(LookAlikeOdds, BoundsAreNamed) {
-  LookAlikeOptions options;
-  options.otherwise = -1.0;
-  EXPECT_THROW(probability_of_look_alike({}, options), Error);
 }
 
 }  // namespace

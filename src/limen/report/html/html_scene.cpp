@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <numeric>
 
-#include "limen/base/error.h"
 #include "limen/geometry/spread_evenly.h"
 #include "limen/geometry/triangulate.h"
 
 namespace limen {
 namespace {
+
+constexpr std::size_t kMostFaces = 60000;  // triangles per side
 
 void add_points(const RegisterInput& input, std::size_t most, SceneSide& side) {
   std::size_t total = 0;
@@ -41,7 +42,7 @@ void add_points(const RegisterInput& input, std::size_t most, SceneSide& side) {
   }
 }
 
-void add_faces(const BimModel& model, std::size_t most, SceneSide& side) {
+void add_faces(const BimModel& model, SceneSide& side) {
   std::vector<std::uint32_t> order(model.faces.size());
   std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -51,7 +52,7 @@ void add_faces(const BimModel& model, std::size_t most, SceneSide& side) {
   for (const std::uint32_t index : order) {
     const BimFace& face = model.faces[index];
     for (const Triangle2& piece : triangulate(face.outline)) {
-      if (side.faces.size() == most) return;
+      if (side.faces.size() == kMostFaces) return;
       side.faces.push_back({shift + face.frame.to_space(piece[0]), shift + face.frame.to_space(piece[1]),
                             shift + face.frame.to_space(piece[2])});
     }
@@ -60,19 +61,14 @@ void add_faces(const BimModel& model, std::size_t most, SceneSide& side) {
 
 }  // namespace
 
-void ReportSceneOptions::check() const {
-  if (max_points < 1) throw_bad_option("max_points", static_cast<double>(max_points), "1 or more");
-}
-
-SceneSide scene_side(const RegisterInput& input, const ReportSceneOptions& options) {
-  options.check();
+SceneSide scene_side(const RegisterInput& input, std::size_t max_points) {
   SceneSide side;
   if (input.model) {
     side.origin = input.model->local_origin;
-    add_faces(*input.model, options.max_faces, side);
+    add_faces(*input.model, side);
   } else if (!input.scans.empty()) {
     side.origin = input.scans.front().scan.local_origin;
-    add_points(input, options.max_points, side);
+    add_points(input, max_points, side);
   }
   return side;
 }

@@ -31,16 +31,9 @@ struct ReportScene {
   SceneSide target;
 };
 
-struct ReportSceneOptions {
-  std::size_t max_points = 300000;  ///< per side
-  std::size_t max_faces = 60000;    ///< triangles per side
-
-  void check() const;
-};
-
 /// What a report draws of scans or a model besides what was found in them: their points, thinned evenly over
 /// the surface, or faces. About the first scan's local origin, or the model's.
-SceneSide scene_side(const RegisterInput& input, const ReportSceneOptions& options = {});
+SceneSide scene_side(const RegisterInput& input, std::size_t max_points = 300000);
 
 /// The side about the origin of what was found in it, and this.
 SceneSide with_picture(SceneSide side, const PicturedSide& pictured);

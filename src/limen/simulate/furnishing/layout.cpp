@@ -6,7 +6,6 @@
 #include <cmath>
 #include <optional>
 
-#include "limen/base/error.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {
@@ -235,13 +234,6 @@ bool stands_at_wall(const PlacedPiece& placed, const Ring& outline) {
 
 }  // namespace
 
-void LayoutOptions::check() const {
-  if (!(hide_share >= 0.0 && hide_share <= 1.0))
-    throw_bad_option("hide_share", hide_share, "between 0 and 1");
-  for (const double density : {free_per_m2, pictures_per_m2, small_per_m2})
-    if (!(density >= 0.0 && density <= 10.0)) throw_bad_option("per_m2", density, "between 0 and 10");
-}
-
 Layout make_fixtures(const World& world, std::size_t building, std::size_t room, std::uint64_t seed) {
   RandomStream random(seed, 11);
   const Building& home = world.buildings[building];
@@ -276,7 +268,6 @@ Layout make_fixtures(const World& world, std::size_t building, std::size_t room,
 
 Layout make_layout(const World& world, std::size_t building, std::size_t room, const LayoutOptions& options,
                    std::uint64_t seed) {
-  options.check();
   RandomStream random(seed, 12);
   return LayoutDecorator(world, building, room, random).run(options);
 }

@@ -27,7 +27,6 @@ struct LayoutOptions {
   double free_per_m2 = 0.08;  ///< pieces that stand away from walls
   double pictures_per_m2 = 0.1;
   double small_per_m2 = 0.1;  ///< bags, bins, bottles on the floor
-  void check() const;
 };
 
 /// Radiators below windows and lamps at the ceiling.

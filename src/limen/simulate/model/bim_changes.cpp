@@ -7,12 +7,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "limen/base/error.h"
 #include "limen/simulate/scanner/ray_caster.h"
 
 namespace limen {
 namespace {
 
+constexpr double kMissingShare = 0.15;  // of doors, furniture and what bears no load
+// At most this share of what the stations see along one direction has moved along it: the model's frame stays
+// what most of the building says.
+constexpr double kMostMovedShare = 0.4;
 constexpr double kNoShift = 0.004;  // m: less along a direction misleads nobody
 constexpr int kProbes = 4000;
 
@@ -112,10 +115,10 @@ std::vector<int> hosts_of(const BimModel& model) {
 class Mover {
  public:
   Mover(const BimModel& model, const AsBuiltOptions& options, RandomStream& random)
-      : o_(options), hosts_(hosts_of(model)), own_(model.elements.size(), Vector3d::Zero()) {
+      : hosts_(hosts_of(model)), own_(model.elements.size(), Vector3d::Zero()) {
     for (std::size_t i = 0; i < own_.size(); ++i) {
       const BimKind kind = model.elements[i].kind;
-      const bool chosen = random.uniform() < o_.moved_share;
+      const bool chosen = random.uniform() < options.moved_share;
       const Vector3d shift = random_shift(kind, random);
       if (chosen && (moves_sideways(kind) || kind == BimKind::slab)) own_[i] = shift;
     }
@@ -129,7 +132,7 @@ class Mover {
   /// Takes back shifts, of what is seen most first, until most of the building is where it should be.
   void keep_majority(const SeenSurface& seen) {
     for (std::size_t axis = 0; axis < 3; ++axis)
-      while (moved_area(seen, axis) > o_.most_moved_share * seen.total[static_cast<Eigen::Index>(axis)])
+      while (moved_area(seen, axis) > kMostMovedShare * seen.total[static_cast<Eigen::Index>(axis)])
         take_back(seen, axis);
   }
 
@@ -158,19 +161,11 @@ class Mover {
     if (hosts_[worst] >= 0) own_[static_cast<std::size_t>(hosts_[worst])].setZero();
   }
 
-  const AsBuiltOptions& o_;
   std::vector<int> hosts_;
   std::vector<Vector3d> own_;
 };
 
 }  // namespace
-
-void AsBuiltOptions::check() const {
-  for (const double share : {moved_share, missing_share, most_moved_share, hidden_wall_share})
-    if (!(share >= 0.0 && share <= 1.0)) throw_bad_option("as-built share", share, "between 0 and 1");
-  if (!(furniture_per_m2 >= 0.0 && furniture_per_m2 <= 2.0))
-    throw_bad_option("furniture_per_m2", furniture_per_m2, "between 0 and 2");
-}
 
 void open_doors(const BimModel& model, double open_share, RandomStream& random, BuiltState& built) {
   for (std::size_t i = 0; i < model.elements.size(); ++i)
@@ -184,7 +179,7 @@ BuiltState as_built(const BimModel& model, const AsBuiltOptions& options, const 
   mover.keep_majority(seen_surface(model, stations, planned));
   for (std::size_t i = 0; i < model.elements.size(); ++i) {
     built.shift_m[i] = mover.shift(i);
-    if (random.uniform() < options.missing_share && bears_nothing(model.elements[i].kind)) built.there[i] = 0;
+    if (random.uniform() < kMissingShare && bears_nothing(model.elements[i].kind)) built.there[i] = 0;
   }
   return built;
 }

@@ -16,15 +16,9 @@ struct AsBuiltOptions {
   bool on = false;  ///< false: everything is where the model has it
   /// Of walls, columns, plates, doors, windows (by 1 to 5 cm) and slabs (by 0.5 to 2 cm).
   double moved_share = 0.25;
-  double missing_share = 0.15;     ///< of doors, furniture and what bears no load
   double furniture_per_m2 = 0.25;  ///< pieces that the model does not have, in the scanned rooms
   /// Of the length of these rooms' walls: wardrobes, shelves, kitchens and the like stand before it, about.
   double hidden_wall_share = 0.0;
-  /// At most this share of what the stations see along one direction has moved along it: the model's frame
-  /// stays what most of the building says.
-  double most_moved_share = 0.4;
-
-  void check() const;
 };
 
 /// Closes some doors and leaves others open.

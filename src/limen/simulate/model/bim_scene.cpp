@@ -138,7 +138,6 @@ void BimSceneOptions::check() const {
   if (!(open_door_share >= 0.0 && open_door_share <= 1.0))
     throw_bad_option("open_door_share", open_door_share, "between 0 and 1");
   if (targets > 50) throw_bad_option("targets", static_cast<double>(targets), "at most 50");
-  as_built.check();
   scanner.check();
 }
 
