@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/model/scan.h"
 
-#include <algorithm>
-
 #include "limen/base/drawn_steps.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/ranked.h"
 
 namespace limen {
 namespace {
@@ -72,9 +71,7 @@ double median_range(const Scan& scan) {
   std::vector<double> ranges;
   for_drawn_steps(scan.size(), 1000,
                   [&](std::size_t i) { ranges.push_back((scan.points[i] - scan.centre(i)).norm()); });
-  const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
-  std::nth_element(ranges.begin(), middle, ranges.end());
-  return *middle;
+  return median(ranges);
 }
 
 Extent extent_of(const std::vector<Vector3d>& points) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "limen/base/parallel.h"
+#include "limen/base/ranked.h"
 #include "limen/geometry/linear.h"
 
 namespace limen {
@@ -76,13 +77,6 @@ struct SeenTile {
     return sum;
   }
 };
-
-/// Reorders the values.
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Median absolute deviation of residuals from their median.
 double spread_of(std::vector<double> residuals) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "limen/base/parallel.h"
+#include "limen/base/ranked.h"
 #include "limen/model/scan.h"
 
 namespace limen {
@@ -25,9 +26,7 @@ double first_cell(const std::vector<Vector3d>& points, const Extent& extent, int
   if (extent.high[axis] - extent.low[axis] < 2.0 * kMiddle * cell_m) return extent.low[axis];
   std::vector<double> values;
   for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / 1001) values.push_back(points[i][axis]);
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2] - kMiddle * cell_m;
+  return median(values) - kMiddle * cell_m;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "limen/base/drawn_steps.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/ranked.h"
 
 namespace limen {
 namespace {
@@ -182,10 +183,8 @@ double surface_noise(const ScanGrid& grid) {
     offsets.push_back(0.5 * std::abs(normal.normalized().dot(of_line - of_others)));
   });
   if (offsets.size() < 20) return 0.0;
-  const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
-  std::nth_element(offsets.begin(), middle, offsets.end());
   constexpr double kMedianOfNormal = 0.6745;
-  return *middle / kMedianOfNormal;
+  return median(offsets) / kMedianOfNormal;
 }
 
 }  // namespace limen

@@ -9,6 +9,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/progress.h"
+#include "limen/base/ranked.h"
 #include "limen/extract/planes/automatic_threshold.h"
 #include "limen/extract/surface/make_polygons.h"
 
@@ -107,13 +108,8 @@ double drift_of(const Features& features) {
     noise.push_back(features.noise_m / std::sqrt(static_cast<double>(sample.count)));
   }
   if (off.size() < 50) return 0.0;
-  const auto middle = [](std::vector<double>& values) {
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-  };
-  const double spread = kToSigma * middle(off);
-  const double expected = middle(noise);
+  const double spread = kToSigma * median(off);
+  const double expected = median(noise);
   return kHidden * std::sqrt(std::max(0.0, spread * spread - expected * expected));
 }
 

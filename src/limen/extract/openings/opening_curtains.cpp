@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limen/base/ranked.h"
 #include "limen/extract/openings/opening_shape.h"
 #include "limen/geometry/linear.h"
 
@@ -20,9 +21,7 @@ constexpr std::size_t kMinCurtainPoints = 60;
 constexpr double kMinFill = 0.6;
 
 double quantile(std::vector<double> values, double share) {
-  const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + k, values.end());
-  return values[static_cast<std::size_t>(k)];
+  return ranked(values, static_cast<std::size_t>(share * static_cast<double>(values.size() - 1)));
 }
 
 /// What hangs in a region before the wall: place of its points on the wall (seen straight on), and their

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "limen/base/ranked.h"
+
 namespace limen {
 namespace {
 
@@ -175,8 +177,7 @@ class Fitter {
       if (sample.kind == SampleKind::wall) walls.push_back(sign * (axis == 0 ? sample.u : sample.v));
     }
     if (walls.size() < kWalls) return from;
-    std::nth_element(walls.begin(), walls.begin() + kWalls - 1, walls.end());
-    return from + kHiddenShare * (walls[kWalls - 1] - from);
+    return from + kHiddenShare * (ranked(walls, kWalls - 1) - from);
   }
 
   const WallEvidence& evidence_;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "limen/base/ranked.h"
 #include "limen/extract/openings/opening_shape.h"
 
 namespace limen {
@@ -33,8 +34,7 @@ constexpr double kLayerShare = 0.5;       // of the rays that met the face where
 double start_of(const std::vector<SidePoint>& points) {
   std::vector<double> depths;
   for (const SidePoint& p : points) depths.push_back(p.depth);
-  std::nth_element(depths.begin(), depths.begin() + 1, depths.end());
-  return depths[1];
+  return ranked(depths, 1);
 }
 
 /// The deepest point reached without a gap.
@@ -189,9 +189,7 @@ class RevealFinder {
     }
     std::sort(layer.crossed.begin(), layer.crossed.end());
     layer.across /= static_cast<double>(layer.count);
-    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(layer.count / 2);
-    std::nth_element(depths.begin(), middle, depths.end());
-    layer.depth_m = *middle;
+    layer.depth_m = median(depths);
     return layer;
   }
 

@@ -28,6 +28,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/ranked.h"
 #include "limen/extract/openings/opening_evidence.h"
 #include "limen/extract/openings/opening_grid.h"
 #include "limen/extract/openings/opening_rectangles.h"
@@ -60,8 +61,7 @@ double foot_beside(const WallEvidence& evidence, const OpeningGrid& grid, const 
   }
   constexpr std::size_t kEnough = 5;
   if (heights.size() < kEnough) return -1e9;
-  std::nth_element(heights.begin(), heights.begin() + kEnough - 1, heights.end());
-  return heights[kEnough - 1];
+  return ranked(heights, kEnough - 1);
 }
 
 /// Whether two are one hole seen in two planes of one wall (its face and its frames, a plinth and the wall

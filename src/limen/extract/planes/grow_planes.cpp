@@ -10,6 +10,7 @@
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/ranked.h"
 #include "limen/extract/cells/cell_grid.h"
 #include "limen/extract/cells/point_normals.h"
 #include "limen/extract/planes/grow_regions.h"
@@ -34,9 +35,7 @@ double noise_of(const CellGrid& grid) {
       thickness.push_back(shape.thickness_m);
   }
   if (thickness.size() < 20) return 0.005;
-  const auto middle = thickness.begin() + static_cast<std::ptrdiff_t>(thickness.size() / 2);
-  std::nth_element(thickness.begin(), middle, thickness.end());
-  return *middle;
+  return median(thickness);
 }
 
 std::vector<std::uint32_t> all_positions(std::size_t size) {

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <utility>
 
-#include "limen/base/error.h"
+#include "limen/base/ranked.h"
 #include "limen/geometry/cell_numbers.h"
 
 namespace limen {
@@ -137,9 +137,7 @@ class StepParts {
     std::vector<double> around;
     around.reserve(of.size());
     for (const std::uint32_t c : of) around.push_back(counts[c]);
-    const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
-    std::nth_element(around.begin(), middle, around.end());
-    return std::clamp(kLookM * std::sqrt(o_.points_of_cell / *middle), o_.finest_m, o_.coarsest_m);
+    return std::clamp(kLookM * std::sqrt(kPointsOfCell / median(around)), kFinestM, kCoarsestM);
   }
 
   void bin(double edge) {

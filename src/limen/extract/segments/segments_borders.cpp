@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "limen/base/ranked.h"
+
 namespace limen {
 namespace {
 
@@ -82,9 +84,7 @@ double depth_of(const BinnedPoints& points) {
   for (const auto& bin : points.bins)
     if (!bin.empty()) depths.push_back(bin.back().first - bin.front().first);
   if (depths.empty()) return 0.0;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  return median(depths);
 }
 
 struct Line2 {
@@ -99,9 +99,7 @@ Line2 robust_line(const std::vector<BorderBin>& bins, double begin, double end, 
   for (const BorderBin& bin : bins)
     if (bin.found && bin.t >= begin && bin.t <= end) heights.push_back(bin.h);
   if (heights.empty()) return {};
-  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-  std::nth_element(heights.begin(), middle, heights.end());
-  Line2 line{*middle, 0.0};
+  Line2 line{median(heights), 0.0};
   for (int round = 0; round < 8; ++round) {
     double w = 0.0, t = 0.0, h = 0.0, tt = 0.0, th = 0.0;
     for (const BorderBin& bin : bins) {

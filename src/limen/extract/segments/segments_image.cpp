@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "limen/base/ranked.h"
+
 namespace limen {
 namespace {
 
@@ -115,9 +117,7 @@ double PlaneImage::finest_pixel_m() const {
   for (std::size_t k = 0; k + 1 < begins_.size(); ++k)
     if (begins_[k + 1] > begins_[k]) sorted.push_back(spacing_m_[k]);
   if (sorted.empty()) return kFinestPixel_m;
-  const auto tenth = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 10);
-  std::nth_element(sorted.begin(), tenth, sorted.end());
-  return std::max(kFinestPixel_m, kPixel * static_cast<double>(*tenth));
+  return std::max(kFinestPixel_m, kPixel * static_cast<double>(ranked(sorted, sorted.size() / 10)));
 }
 
 void PlaneImage::fill() {

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <numeric>
 
+#include "limen/base/ranked.h"
+
 namespace limen {
 namespace {
 
@@ -18,11 +20,8 @@ constexpr std::size_t kShortestProfile = 20;
 /// Angles that grow in a smaller share of steps than this are in no order.
 constexpr double kSteadyShare = 0.9;
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+double median_or_zero(std::vector<double> values) {
+  return values.empty() ? 0.0 : median(values);
 }
 
 /// The echoes in the order of measurement.
@@ -80,7 +79,7 @@ Rhythm rhythm_of(const Echoes& echoes) {
   for (std::size_t i = 1; i < echoes.size(); ++i) {
     if (echoes.turn(i) > 0.0) steps.push_back(echoes.turn(i));
   }
-  const double typical = median(std::move(steps));
+  const double typical = median_or_zero(std::move(steps));
   Rhythm rhythm;
   double turned = 0.0;
   double waited = 0.0;
@@ -114,7 +113,7 @@ double period_of(const Echoes& echoes, const Rhythm& rhythm) {
     }
     last = i;
   }
-  return periods.size() < 3 ? 0.0 : median(std::move(periods));
+  return periods.size() < 3 ? 0.0 : median_or_zero(std::move(periods));
 }
 
 /// Profiles that begin between echo i - 1 and echo i.
@@ -158,7 +157,7 @@ bool plausible(const ScanTopology& topology, const Echoes& echoes) {
     current = line;
     lengths.back() += 1.0;
   }
-  return lengths.size() >= 2 && median(std::move(lengths)) >= static_cast<double>(kShortestProfile);
+  return lengths.size() >= 2 && median_or_zero(std::move(lengths)) >= static_cast<double>(kShortestProfile);
 }
 
 bool all_finite(const std::vector<double>& values) {

@@ -14,6 +14,7 @@
 
 #include "limen/base/angles.h"
 #include "limen/base/parallel.h"
+#include "limen/base/ranked.h"
 #include "limen/extract/surface/sample_surface.h"
 #include "limen/model/features.h"
 #include "limen/model/plausible_size.h"
@@ -251,15 +252,10 @@ int quarter_of(const Matrix3d& frame, const Scan& sample) {
   std::array<double, 2> lean{};
   for (std::size_t k = 0; k < 2; ++k) {
     const std::size_t cut = along[k].size() / 50;
-    const auto at = [&](std::size_t place) {
-      const auto it = along[k].begin() + static_cast<std::ptrdiff_t>(place);
-      std::nth_element(along[k].begin(), it, along[k].end());
-      return *it;
-    };
-    const double low = at(cut);
-    const double high = at(along[k].size() - 1 - cut);
+    const double low = ranked(along[k], cut);
+    const double high = ranked(along[k], along[k].size() - 1 - cut);
     length[k] = high - low;
-    lean[k] = 0.5 * (low + high) - at(along[k].size() / 2);
+    lean[k] = 0.5 * (low + high) - median(along[k]);
   }
   const bool swap = length[1] > length[0];
   const bool positive = lean[swap ? 1 : 0] >= 0.0;
@@ -274,13 +270,8 @@ Matrix3d turned_about_z(const Matrix3d& frame, double angle) {
 /// out first, by what a part of them says, so that few have to be kept and sorted; the answer is that of
 /// sorting all.
 template <typename ValueOf>
-double ranked(std::size_t size, std::size_t rank, const ValueOf& value) {
+double value_of_rank(std::size_t size, std::size_t rank, const ValueOf& value) {
   constexpr std::size_t kPart = 64;
-  const auto at = [](std::vector<double>& of, std::size_t place) {
-    const auto it = of.begin() + static_cast<std::ptrdiff_t>(place);
-    std::nth_element(of.begin(), it, of.end());
-    return *it;
-  };
   const auto up_to = [&](double bound, std::size_t step) {
     std::vector<double> values;
     for (std::size_t i = 0; i < size; i += step) {
@@ -293,10 +284,10 @@ double ranked(std::size_t size, std::size_t rank, const ValueOf& value) {
   std::vector<double> low;
   if (size >= kPart * kPart * kPart) {
     std::vector<double> part = up_to(kAny, kPart);
-    low = up_to(at(part, std::min(part.size() - 1, 2 * rank / kPart + 100)), 1);
+    low = up_to(ranked(part, std::min(part.size() - 1, 2 * rank / kPart + 100)), 1);
   }
   if (low.size() <= rank) low = up_to(kAny, 1);
-  return at(low, rank);
+  return ranked(low, rank);
 }
 
 /// A corner of the extent, a few stray points left out. Of all points: which were looked at must not show.
@@ -306,7 +297,8 @@ Vector3d corner_of(const Matrix3d& frame, const std::vector<Vector3d>& points) {
   parallel_for(3, 1, [&](std::size_t first, std::size_t last) {
     for (auto k = static_cast<Eigen::Index>(first); k < static_cast<Eigen::Index>(last); ++k)
       corner[k] =
-          ranked(points.size(), rank, [&](std::size_t i) { return frame.row(k).dot(points[i]); }) - kMarginM;
+          value_of_rank(points.size(), rank, [&](std::size_t i) { return frame.row(k).dot(points[i]); }) -
+          kMarginM;
   });
   return frame.transpose() * corner;
 }

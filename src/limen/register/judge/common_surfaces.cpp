@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "limen/base/ranked.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {
@@ -132,15 +133,12 @@ Fit fit_of(const std::vector<TilePair>& pairs) {
 std::vector<TilePair> without_outliers(const std::vector<TilePair>& pairs) {
   std::vector<double> values;
   for (const TilePair& pair : pairs) values.push_back(pair.apart_m);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  const double median = *middle;
-  for (double& value : values) value = std::abs(value - median);
-  std::nth_element(values.begin(), middle, values.end());
-  const double gate = std::max(0.004, kOutlier * 1.5 * *middle);
+  const double middle = median(values);
+  for (double& value : values) value = std::abs(value - middle);
+  const double gate = std::max(0.004, kOutlier * 1.5 * median(values));
   std::vector<TilePair> kept;
   for (const TilePair& pair : pairs)
-    if (std::abs(pair.apart_m - median) <= gate) kept.push_back(pair);
+    if (std::abs(pair.apart_m - middle) <= gate) kept.push_back(pair);
   return kept;
 }
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/ranked.h"
 
 namespace limen {
 namespace {
@@ -115,10 +116,8 @@ PlaceError error_against(const Placed& reference, const Placed& scan) {
 
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
-  const auto at = values.begin() +
-                  static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values.size() - 1)));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return ranked(values,
+                static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1))));
 }
 
 double ProjectErrors::shift_of(double share) const {
