@@ -33,15 +33,6 @@ void DistanceCounts::add(double distance_m) {
   squares_ += distance_m * distance_m;
 }
 
-void DistanceCounts::add(const DistanceCounts& others) {
-  for (std::size_t k = 0; k < others.counts_.size(); ++k) {
-    if (others.counts_[k] > 0) at(others.first_ + static_cast<std::int32_t>(k)) += others.counts_[k];
-  }
-  points_ += others.points_;
-  sum_ += others.sum_;
-  squares_ += others.squares_;
-}
-
 void DistanceCounts::describe(ElementDeviation& it) const {
   it.points = points_;
   if (points_ == 0) return;

@@ -16,7 +16,6 @@ class DistanceCounts {
  public:
   /// Not-a-number and what is farther than a metre are not counted.
   void add(double distance_m);
-  void add(const DistanceCounts& others);
   /// Fills points, median, mean, sigma, 95 % and class.
   void describe(ElementDeviation& it) const;
   [[nodiscard]] std::size_t points() const { return points_; }

@@ -79,19 +79,4 @@ bool contains(const Polygon& polygon, const Vector2d& p) {
   return true;
 }
 
-PlanarPolygon flipped(const PlanarPolygon& polygon) {
-  PlanarPolygon back = polygon;
-  back.plane = polygon.plane.flipped();
-  back.frame.u = -polygon.frame.u;
-  const auto mirror = [](Ring& ring) {
-    for (Vector2d& p : ring) p.x() = -p.x();
-    std::reverse(ring.begin(), ring.end());
-  };
-  for (Polygon& part : back.parts) {
-    mirror(part.outer);
-    for (Ring& hole : part.holes) mirror(hole);
-  }
-  return back;
-}
-
 }  // namespace limen

@@ -47,7 +47,4 @@ struct PlanarPolygon {
   bool interior = false;  ///< seen through the openings of a wall: inside from a street, outside from a room
 };
 
-/// The same surface seen from behind: normal, frame and outlines turned round.
-PlanarPolygon flipped(const PlanarPolygon& polygon);
-
 }  // namespace limen

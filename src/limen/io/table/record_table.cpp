@@ -78,12 +78,6 @@ std::size_t size_of(Scalar scalar) {
   return with_type(scalar, [](auto value) { return sizeof value; });
 }
 
-const char* name_of(Scalar scalar) {
-  static constexpr const char* kNames[] = {"int8",   "uint8", "int16",  "uint16",  "int32",
-                                           "uint32", "int64", "uint64", "float32", "float64"};
-  return kNames[static_cast<std::size_t>(scalar)];
-}
-
 bool is_integer(Scalar scalar) {
   return scalar != Scalar::float32 && scalar != Scalar::float64;
 }

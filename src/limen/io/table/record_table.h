@@ -54,7 +54,6 @@ auto with_type(Scalar type, const Action& action) {
 
 /// Bytes of one number.
 std::size_t size_of(Scalar scalar);
-const char* name_of(Scalar scalar);
 [[nodiscard]] bool is_integer(Scalar scalar);
 
 /// Some bits of an integer, counted from the lowest; count 0: the whole number.

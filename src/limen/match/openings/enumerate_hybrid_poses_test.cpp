@@ -63,7 +63,7 @@ TEST(PlaneShifts, FindsTheShiftThatLaysPlanesOnEachOther) {
   a.planes = {rectangle(Vector3d(0.0, 5.0, 0.0), Vector3d::UnitX(), Vector3d::UnitZ(), 4.0, 2.0)};
   b.planes = {rectangle(Vector3d(1.0, 5.3, 0.0), Vector3d::UnitX(), Vector3d::UnitZ(), 1.0, 1.0),
               rectangle(Vector3d(9.0, 5.1, 0.0), Vector3d::UnitX(), Vector3d::UnitZ(), 1.0, 1.0),
-              flipped(rectangle(Vector3d(1.0, 5.2, 0.0), Vector3d::UnitX(), Vector3d::UnitZ(), 1.0, 1.0))};
+              rectangle(Vector3d(2.0, 5.2, 0.0), -Vector3d::UnitX(), Vector3d::UnitZ(), 1.0, 1.0)};
   const PlaneShiftFinder finder(a, b, Vector3d::UnitZ(), Vector3d::UnitZ());
   const auto shifts = finder.along(Rigid3{}, Vector3d::UnitY(), -1.0, 1.0);
   ASSERT_EQ(shifts.size(), 1U);  // the second lies beside it, the third was seen from behind

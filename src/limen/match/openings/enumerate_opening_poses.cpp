@@ -333,10 +333,6 @@ Vector3d middle_of(const std::vector<WallWithOpenings>& walls) {
 
 }  // namespace
 
-const char* to_string(WallSides sides) {
-  return sides == WallSides::opposite ? "opposite" : "same";
-}
-
 std::vector<OpeningPose> enumerate_opening_poses(const Features& source, const Features& target,
                                                  const OpeningPoseOptions& options) {
   std::optional<Vector3d> up;

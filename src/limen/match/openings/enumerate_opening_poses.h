@@ -28,7 +28,6 @@ enum class WallSides : std::uint8_t {
   opposite,  ///< one from inside, one from outside: normals oppose, left and right change places
   same
 };
-const char* to_string(WallSides sides);
 
 struct OpeningPoseOptions {
   bool gravity_known = true;      ///< both z axes point up; else each opening's own upper side is taken

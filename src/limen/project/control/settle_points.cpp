@@ -32,8 +32,6 @@ class Settler {
     settled_.verdicts.resize(problem.points.size());
     std::size_t tests = 0;
     for (const MarkedPoint& point : problem.points) {
-      numbers_.emplace_back(point.sights.size());
-      std::iota(numbers_.back().begin(), numbers_.back().end(), std::size_t{0});
       has_known_ = has_known_ || point.is_known();
       tests += (point.known ? 1 : 0) + (point.sights.size() > 1 ? point.sights.size() : 0);
     }
@@ -128,9 +126,6 @@ class Settler {
       point.known_enters = false;
       return;
     }
-    std::vector<std::size_t>& numbers = numbers_[suspect.point];
-    verdict.sights_left_out.push_back(numbers[static_cast<std::size_t>(suspect.sight)]);
-    numbers.erase(numbers.begin() + suspect.sight);
     point.sights.erase(point.sights.begin() + suspect.sight);
   }
 
@@ -169,7 +164,6 @@ class Settler {
   const std::vector<bool>& candidates_;
   PointBounds bounds_;
   SettledPoints settled_;
-  std::vector<std::vector<std::size_t>> numbers_;  ///< of the sights that are left
   bool has_known_ = false;
 };
 

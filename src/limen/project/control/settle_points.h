@@ -12,10 +12,9 @@ namespace limen {
 
 /// What the tests made of a point's observations.
 struct PointVerdict {
-  bool known_left_out = false;               ///< its coordinates are contradicted by all else
-  std::vector<std::size_t> sights_left_out;  ///< by their number in the problem as it was given
-  bool suspected = false;                    ///< left out, but one of several that may be the wrong one
-  double squared = 0.0;                      ///< chi square of three freedoms of what was left out
+  bool known_left_out = false;  ///< its coordinates are contradicted by all else
+  bool suspected = false;       ///< left out, but one of several that may be the wrong one
+  double squared = 0.0;         ///< chi square of three freedoms of what was left out
 };
 
 struct SettledPoints {

@@ -30,6 +30,7 @@ FramedNodes framed(const SyntheticSurvey& survey, const std::vector<PoseEdge>& e
 struct Surveyed {
   PointFit fit;
   SettledPoints settled;
+  std::vector<MarkedPoint> points;  ///< with the sights that stayed
 };
 
 /// From links and points to poses in the frame of control. Points with `enters` false are check points.
@@ -57,6 +58,7 @@ Surveyed survey_whole(const SyntheticSurvey& survey) {
   // Which of them is wrong, all together tell best.
   for (const std::size_t k : datum.fit.suspects) problem.points[datum.points[k]].known_enters = true;
   done.settled = settle_points(problem, candidates);
+  done.points = problem.points;
   return done;
 }
 
@@ -153,7 +155,9 @@ TEST(SettlePoints, ASightOfAnotherTargetIsLeftOutAndTheTargetStays) {
     const Surveyed done = survey_whole(survey);
     ASSERT_EQ(done.fit.state, PointFitState::fixed);
     ASSERT_TRUE(done.settled.firm);
-    EXPECT_EQ(done.settled.verdicts[2].sights_left_out, std::vector<std::size_t>{1}) << seed;
+    EXPECT_EQ(done.points[2].sights.size(), survey.points[2].sights.size() - 1) << seed;
+    for (const PointSight& sight : done.points[2].sights)
+      EXPECT_NE(sight.node, survey.points[2].sights[1].node) << seed;
     EXPECT_FALSE(done.settled.verdicts[2].known_left_out) << seed;
   }
 }

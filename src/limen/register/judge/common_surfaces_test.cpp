@@ -100,7 +100,7 @@ TEST(CommonSurfaces, LayersOfOneWallCountOnce) {
 
 TEST(CommonSurfaces, WhatFacesTheOtherWayIsAnother) {
   Features target = room(0.0, 0.001, 2);
-  target.planes[1] = flipped(target.planes[1]);
+  target.planes[1].plane = target.planes[1].plane.flipped();
   EXPECT_EQ(asked(room(0.0, 0.001, 1), target).all.size(), 2U);
 }
 
