@@ -170,14 +170,6 @@ Recipe build_villa(const SceneOptions& options, RandomStream& random) {
   return recipe;
 }
 
-Recipe finished(Recipe recipe, std::size_t points_outdoor, RandomStream& random) {
-  recipe.points_indoor = 300000;
-  recipe.points_outdoor = points_outdoor;
-  if (random.uniform() < 0.5) recipe.head_turns_rad = {radians(35.0), radians(-35.0)};
-  recipe.wants_view = true;
-  return recipe;
-}
-
 }  // namespace
 
 Recipe townhouse_recipe(const SceneOptions& options, RandomStream& random) {

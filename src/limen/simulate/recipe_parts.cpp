@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/simulate/recipe_parts.h"
 
+#include "limen/base/angles.h"
 #include "limen/simulate/buildings/building.h"
 
 namespace limen {
@@ -70,6 +71,14 @@ FacadeOptions random_facade(const SceneOptions& options, double curtain_share, R
 void furnish_all(World& world, std::size_t building, double fullness, RandomStream& random) {
   for (std::size_t room = 0; room < world.buildings[building].plan.rooms.size(); ++room)
     furnish(world, building, room, fullness * random.uniform(0.7, 1.2), random);
+}
+
+Recipe finished(Recipe recipe, std::size_t points_outdoor, RandomStream& random) {
+  recipe.points_indoor = 300000;
+  recipe.points_outdoor = points_outdoor;
+  if (random.uniform() < 0.5) recipe.head_turns_rad = {radians(35.0), radians(-35.0)};
+  recipe.wants_view = true;
+  return recipe;
 }
 
 std::size_t facades_of(const World& world, std::size_t room, View view) {

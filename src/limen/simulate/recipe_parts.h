@@ -50,6 +50,10 @@ std::vector<std::size_t> rooms_where(const World& world, RandomStream& random, c
 /// Rooms for stations: the first one as `options.facades` asks, the others in rooms with open windows.
 void choose_rooms_with_view(Recipe& recipe, const SceneOptions& options, RandomStream& random);
 
+/// The recipe of a scene with a street: a room must see out of the window, and the scanner's head may be
+/// turned.
+Recipe finished(Recipe recipe, std::size_t points_outdoor, RandomStream& random);
+
 /// Scenes of their own files.
 Recipe townhouse_recipe(const SceneOptions& options, RandomStream& random);
 Recipe villa_recipe(const SceneOptions& options, RandomStream& random);

@@ -3,6 +3,7 @@
 #include "limen/simulate/recipes.h"
 
 #include <array>
+#include <utility>
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
@@ -123,11 +124,7 @@ Recipe museum_recipe(const SceneOptions& options, RandomStream& random) {
   recipe.path = add_street(recipe.world, 0, street, random);
   add_garden(recipe.world, 0, 4, random);
   choose_rooms_with_view(recipe, options, random);
-  recipe.points_indoor = 300000;
-  recipe.points_outdoor = 800000;
-  if (random.uniform() < 0.5) recipe.head_turns_rad = {radians(35.0), radians(-35.0)};
-  recipe.wants_view = true;
-  return recipe;
+  return finished(std::move(recipe), 800000, random);
 }
 
 /// Every bay and storey alike: only what lies outside the grid distinguishes shifts.
@@ -166,11 +163,7 @@ Recipe regular_recipe(const SceneOptions& options, RandomStream& random) {
   });
   recipe.station_rooms.assign(1, rooms.empty() ? 0 : rooms[0]);
   recipe.spare_rooms = rooms;
-  recipe.points_indoor = 300000;
-  recipe.points_outdoor = 800000;
-  if (random.uniform() < 0.5) recipe.head_turns_rad = {radians(35.0), radians(-35.0)};
-  recipe.wants_view = true;
-  return recipe;
+  return finished(std::move(recipe), 800000, random);
 }
 
 /// As many stations as were asked for: more ones stand in further rooms, or in the same where it is alone.
