@@ -3,7 +3,6 @@
 #include "limen/deviation/deviation.h"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "support/box_room.h"

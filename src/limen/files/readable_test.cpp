@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 #include <cerrno>
-#include <string>
 
 #include "support/test_support.h"
 #include <gtest/gtest.h>

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/files/zip.h"
 
-#include <algorithm>
-#include <cstdint>
-
 #include <fmt/format.h>
 #include <zlib.h>
 

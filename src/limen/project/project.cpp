@@ -26,7 +26,6 @@
 #include "limen/project/solve/project_graph.h"
 #include "limen/project/state/project_node.h"
 #include "limen/project/state/scan_names.h"
-#include "limen/project/store/scan_picture.h"
 #include "limen/project/survey/found_targets.h"
 #include "limen/project/survey/stated_place.h"
 

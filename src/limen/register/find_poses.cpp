@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <tuple>
-#include <utility>
 
 #include "limen/base/parallel.h"
 #include "limen/register/judge/evidence_table.h"

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 // What must not change the answer of a registration. bench_metamorphic measures the same over more pairs.
-#include <cmath>
 #include <numeric>
 #include <utility>
 

@@ -14,6 +14,7 @@
 #include "limen/match/segments/enumerate_segment_poses.h"
 #include "limen/match/segments/segment_distance.h"
 #include "limen/register/judge/verdict.h"
+#include "limen/register/refine/refine_segments.h"
 
 namespace limen {
 namespace {

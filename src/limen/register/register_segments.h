@@ -6,7 +6,6 @@
 #include "limen/model/result.h"
 #include "limen/model/segment_set.h"
 #include "limen/register/prepare/prepare_scan.h"
-#include "limen/register/refine/refine_segments.h"
 
 namespace limen {
 

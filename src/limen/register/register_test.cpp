@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/register/register.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
 
 #include "limen/base/angles.h"

@@ -2,12 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/bim/build/bim_builder.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/bim/ifc/read_ifc.h"
 
-#include <csignal>
 #include <cstdlib>
 #include <string>
 #include <thread>

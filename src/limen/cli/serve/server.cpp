@@ -3,7 +3,6 @@
 #include "limen/cli/serve/server.h"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <utility>
 #include <vector>

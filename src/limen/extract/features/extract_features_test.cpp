@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/extract/features/extract_features.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "support/synthetic_room.h"

@@ -3,7 +3,6 @@
 #include "limen/extract/planes/detect_planes.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <gtest/gtest.h>
 

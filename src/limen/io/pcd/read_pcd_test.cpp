@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
-#include <limits>
 
 #include "support/test_support.h"
 #include <gtest/gtest.h>
 
-#include "limen/base/error.h"
 #include "limen/io/pcd/pcd.h"
 
 namespace limen {

@@ -7,7 +7,6 @@
 #include <numeric>
 #include <utility>
 
-#include "limen/base/angles.h"
 #include "limen/base/parallel.h"
 #include "limen/match/openings/opening_walls.h"
 #include "limen/match/planes/plane_shifts.h"

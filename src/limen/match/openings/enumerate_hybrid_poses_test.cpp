@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/match/openings/enumerate_hybrid_poses.h"
 
-#include <cmath>
-
 #include "support/synthetic_openings.h"
 #include <gtest/gtest.h>
 
-#include "limen/base/angles.h"
 #include "limen/match/planes/plane_shifts.h"
 
 namespace limen {

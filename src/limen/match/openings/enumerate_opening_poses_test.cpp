@@ -2,14 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/match/openings/enumerate_opening_poses.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "support/synthetic_openings.h"
 #include <gtest/gtest.h>
 
 #include "limen/base/angles.h"
-#include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/geometry/random_vectors.h"
 

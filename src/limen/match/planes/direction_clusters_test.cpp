@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/match/planes/direction_clusters.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>

@@ -3,7 +3,6 @@
 #include "limen/match/planes/enumerate_model_poses.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>

@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "limen/base/angles.h"
 #include "limen/geometry/polygon.h"
 
 // Djahel, Monasse, Vallet, "Towards efficient indoor/outdoor registration using planar polygons", 2021,

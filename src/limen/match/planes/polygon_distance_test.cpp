@@ -3,7 +3,6 @@
 #include "limen/match/planes/polygon_distance.h"
 
 #include <cmath>
-#include <numbers>
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,6 @@
 #include "limen/match/segments/segment_distance.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/project/run/try_pairs.h"
 
-#include <memory>
 #include <mutex>
 
 #include <fmt/format.h>

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/project/solve/own_drift.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include "limen/base/parallel.h"

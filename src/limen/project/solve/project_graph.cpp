@@ -11,7 +11,6 @@
 #include "limen/base/angles.h"
 #include "limen/geometry/linear.h"
 #include "limen/project/solve/word_terms.h"
-#include "limen/register/judge/verdict.h"
 
 namespace limen {
 namespace {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <string>
-#include <utility>
 
 #include "limen/base/angles.h"
 #include "limen/geometry/rotation_between.h"

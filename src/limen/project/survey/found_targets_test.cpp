@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/project/survey/found_targets.h"
 
-#include <algorithm>
 #include <map>
 #include <set>
 #include <sstream>

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/project/survey/stated_place.h"
 
-#include <cmath>
-
 #include "support/test_support.h"
 #include <gtest/gtest.h>
 

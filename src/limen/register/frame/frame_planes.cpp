@@ -9,7 +9,6 @@
 #include <optional>
 #include <utility>
 
-#include "limen/base/angles.h"
 #include "limen/base/parallel.h"
 #include "limen/extract/cells/cell_grid.h"
 #include "limen/geometry/linear.h"

@@ -3,7 +3,6 @@
 #include "limen/register/judge/common_surfaces.h"
 
 #include <cmath>
-#include <vector>
 
 #include <gtest/gtest.h>
 

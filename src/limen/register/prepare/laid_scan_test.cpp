@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <numeric>
 #include <set>
 #include <tuple>

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/bcf/bcf_file.h"
 
-#include <map>
 #include <string>
 
 #include "support/bcf_check.h"

@@ -12,7 +12,6 @@
 #include <fmt/args.h>
 #include <fmt/format.h>
 
-#include "limen/base/text.h"
 #include "limen/report/html/html_bytes.h"
 #include "limen/report/html/html_elements.h"
 #include "limen/report/html/report_page.h"

@@ -3,7 +3,6 @@
 #include "limen/report/project/project_schema.h"
 
 #include <limits>
-#include <string>
 
 #include "support/json_schema.h"
 #include <gtest/gtest.h>

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/report/summary/precision.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/simulate/buildings/opening_parts.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
