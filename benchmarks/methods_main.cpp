@@ -75,16 +75,21 @@ void prepare(Pair& pair, const std::string& method) {
 /// walls that are seen through doors have one too.
 void compare_thickness(const Pair& pair, const RegistrationResult& result, Row& row) {
   constexpr double kInPlaneM = 0.05;
+  constexpr double kAlong = 0.99;
   const Truth& truth = pair.made.truth;
   const Features& features = pair.prepared.source.extracted.features;
   for (const TrueOpening& opening : truth.openings) {
     if (!opening.exterior || opening.curtained || opening.rooms[0] != truth.scans[0].room) continue;
     const Vector3d middle = 0.5 * (opening.inner[0] + opening.inner[2]);
     const Vector3d in_scan = inverse(truth.scans[0].local_from_scan) * middle;
-    const Vector3d prepared = pair.prepared.source.upright_from_scan * (in_scan - features.local_origin);
+    const Matrix3d& upright = pair.prepared.source.upright_from_scan;
+    const Vector3d prepared = upright * (in_scan - features.local_origin);
+    const Vector3d normal = upright * truth.scans[0].local_from_scan.rotation.transpose() * opening.normal;
     for (const MeasuredThickness& measured : result.thickness) {
-      const auto plane = static_cast<std::size_t>(measured.source_plane);
-      if (std::abs(features.planes[plane].plane.signed_distance(prepared)) > kInPlaneM) continue;
+      const Plane& plane = features.planes.at(static_cast<std::size_t>(measured.source_plane)).plane;
+      if (std::abs(plane.normal.dot(normal)) < kAlong ||
+          std::abs(plane.signed_distance(prepared)) > kInPlaneM)
+        continue;
       row.thickness_error_m = measured.value_m - opening.thickness_m;
       row.thickness_sigma_m = measured.sigma_m;
       return;

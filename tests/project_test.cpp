@@ -182,7 +182,16 @@ TEST_F(Project, AResultThatCannotBeWrittenLeavesTheFormerReport) {
   write_whole(work() / "out" / "report.html", "former");
   const ProgramRun done = run(call(scans, "out"));
   EXPECT_EQ(done.status, 2) << done.err;
+  EXPECT_NE(done.err.find("project.json"), std::string::npos) << done.err;
   EXPECT_EQ(read_whole(work() / "out" / "report.html"), "former");
+  EXPECT_FALSE(std::filesystem::exists(work() / "out" / "links.csv"));
+
+  std::filesystem::remove(work() / "out" / "project.json");
+  for (const char* name : {"report.pdf", "question_7.svg"}) write_whole(work() / "out" / name, "former");
+  EXPECT_EQ(run(call(scans, "out")).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(work() / "out" / "project.json"));
+  EXPECT_FALSE(std::filesystem::exists(work() / "out" / "report.pdf"));
+  EXPECT_FALSE(std::filesystem::exists(work() / "out" / "question_7.svg"));
 }
 
 TEST_F(Project, WhatTheStoreKeepsOfAFileTellsNoOldNameAndIsOfNoOtherKind) {

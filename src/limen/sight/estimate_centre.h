@@ -29,7 +29,7 @@ struct TestedCentre {
   EstimatedCentre nearby;     ///< where the fit comes to rest that starts there
 };
 
-/// Whether the points are spread evenly over the surfaces, as a cloud that was thinned to a spacing is: then
+/// Whether the density has an upper bound, as that of a cloud which was thinned to a spacing has: then
 /// neither the density on planes nor the spread over directions shows where the scanner was.
 bool evenly_thinned(const Features& features);
 

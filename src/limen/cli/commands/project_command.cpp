@@ -7,6 +7,8 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -362,7 +364,7 @@ std::vector<ProjectPicture> pictures_in(const std::filesystem::path& folder,
 /// What a run leaves in its folder: the name and the text of each file, project.json last.
 std::vector<std::pair<std::string, std::string>> files_of(const ProjectResult& result,
                                                           std::vector<ProjectPicture> pictures,
-                                                          std::string json, const ReportCover& cover,
+                                                          const std::string& json, const ReportCover& cover,
                                                           bool georeferenced) {
   std::vector<std::pair<std::string, std::string>> files;
   const std::vector<std::string> drawn = question_pictures(result, pictures);
@@ -375,21 +377,26 @@ std::vector<std::pair<std::string, std::string>> files_of(const ProjectResult& r
   files.emplace_back("stations.csv", csv_of(sheets[0]));
   files.emplace_back("links.csv", csv_of(sheets[1]));
   files.emplace_back("tables.xlsx", workbook_of(sheets));
-  files.emplace_back("project.json", std::move(json));
+  files.emplace_back("project.json", json);
   return files;
 }
 
-/// All of the files or none; pictures and the printed report of an earlier run go.
+/// Writes none of the files where one has no room. Then pictures and the printed report of an earlier run go.
 void replace_files(const std::filesystem::path& folder,
-                   const std::vector<std::pair<std::string, std::string>>& files) {
+                   const std::vector<std::pair<std::string, std::string>>& files, const Session& session) {
   std::vector<FileToWrite> written;
   for (const auto& [name, text] : files) written.push_back({folder / name, text});
   write_files(written);
-  std::filesystem::remove(folder / "report.pdf");
-  for (std::size_t number = 1; number <= kMostPictures; ++number) {
-    const std::string name = fmt::format("question_{}.svg", number);
-    if (std::none_of(files.begin(), files.end(), [&](const auto& file) { return file.first == name; }))
-      std::filesystem::remove(folder / name);
+  std::vector<std::string> earlier = {"report.pdf"};
+  for (std::size_t number = 1; number <= kMostPictures; ++number)
+    earlier.push_back(fmt::format("question_{}.svg", number));
+  for (const std::string& name : earlier) {
+    if (std::any_of(files.begin(), files.end(), [&](const auto& file) { return file.first == name; }))
+      continue;
+    std::error_code fault;
+    std::filesystem::remove(folder / name, fault);
+    if (fault)
+      session.note(fmt::format("{} is of an earlier run and cannot be removed", (folder / name).string()));
   }
 }
 
@@ -427,8 +434,10 @@ int run(ProjectCommandOptions options, const Session& session) {
   const std::string json = project_json(result, reported(options, session), system);
   session.monitor->throw_if_cancelled();
   std::vector<ProjectPicture> pictures = pictures_in(folder.path(), options, trajectories, session, result);
-  replace_files(folder.path(), files_of(result, std::move(pictures), json, cover,
-                                        system.system.known() || result.frame_kind == "control"));
+  replace_files(folder.path(),
+                files_of(result, std::move(pictures), json, cover,
+                         system.system.known() || result.frame_kind == "control"),
+                session);
   if (options.pdf) write_pdf(browser, folder.path(), session);
   for (const std::string& note : of_system) session.note(note);
   session.say(summary(result, options.folder));

@@ -15,8 +15,8 @@
 // Departures:
 // - the score is the unitless one of 2022, equation 2, higher is better (equations 1 and 2 are costs);
 // - the number of trials follows from the inlier ratio and a confidence, up to a limit;
-// - the second and third point come from around the first (`reach_m`; 0: from anywhere, as printed): a plane
-//   of one point in a hundred is hit by one in a million of the printed samples;
+// - the second and third point come from around the first: a plane of one point in a hundred is hit by one in
+//   a million of the printed samples;
 // - the plane is refitted to its inliers by least squares, and these are taken anew.
 
 namespace limen {

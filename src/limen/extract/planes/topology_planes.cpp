@@ -107,7 +107,7 @@ class TopologyDetector {
     return at != ScanGrid::kNone && labels_[static_cast<std::size_t>(at)] == kFree;
   }
 
-  /// Free places linked one after the other, up to `reach_m` away, at most `most` of them.
+  /// Free places linked one after the other, up to `kSampleReachM` away, at most `most` of them.
   [[nodiscard]] std::vector<std::size_t> walk(std::size_t from, ScanGrid::Link link, std::size_t most) const {
     std::vector<std::size_t> places;
     std::int32_t at = grid_.links(from)[link];

@@ -12,8 +12,8 @@
 namespace limen {
 namespace {
 
-constexpr double kDetailM =
-    0.10;  // edge of the cubes whose points make one piece; twice that where they are few
+/// Edge of the cubes whose points make one piece; twice that where they are few.
+constexpr double kDetailM = 0.10;
 constexpr std::size_t kLeastOfDetail = 8;   // points of a piece
 constexpr std::size_t kMostDetails = 4000;  // of a scan, evenly chosen
 constexpr double kBuiltLengthM = 2.1;

@@ -14,8 +14,8 @@
 namespace limen {
 namespace {
 
-constexpr double kSameAcrossM = 0.06;  // shifts nearer than this are one
-constexpr int kMostShiftsAcross = 6;   // along the normal, per opening pose
+constexpr double kCommonShiftM = 0.06;  // shifts nearer than this are one
+constexpr int kMostShiftsAcross = 6;    // along the normal, per opening pose
 constexpr std::size_t kMostHybridPoses = 1200;
 constexpr double kSamePoseM = 0.01;  // opening poses that differ along their normal only are one
 constexpr double kSamePoseRad = 0.002;
@@ -80,7 +80,7 @@ class HybridEnumerator {
     std::vector<HybridPose> poses;
     const auto add = [&](const HybridPose& pose) {
       const bool known = std::any_of(poses.begin(), poses.end(), [&](const HybridPose& other) {
-        return std::abs(other.thickness_m - pose.thickness_m) < 0.5 * kSameAcrossM;
+        return std::abs(other.thickness_m - pose.thickness_m) < 0.5 * kCommonShiftM;
       });
       if (!known && possible(pose.thickness_m)) poses.push_back(pose);
     };
@@ -107,15 +107,15 @@ class HybridEnumerator {
   /// much.
   [[nodiscard]] std::vector<PlaneShift> shifts_near(const OpeningPose& opening, double low,
                                                     double high) const {
-    return finder_.along(opening.target_from_source, opening.wall_normal, low - kSameAcrossM,
-                         high + kSameAcrossM);
+    return finder_.along(opening.target_from_source, opening.wall_normal, low - kCommonShiftM,
+                         high + kCommonShiftM);
   }
 
   /// Overlap of the planes that agree with a shift.
   [[nodiscard]] double support_at(const std::vector<PlaneShift>& shifts, double shift_m) const {
     double sum = 0.0;
     for (const PlaneShift& shift : shifts) {
-      const double off = (shift.shift_m - shift_m) / kSameAcrossM;
+      const double off = (shift.shift_m - shift_m) / kCommonShiftM;
       sum += shift.overlap_m2 * std::max(0.0, 1.0 - off * off);
     }
     return sum;
@@ -128,7 +128,7 @@ class HybridEnumerator {
   [[nodiscard]] std::vector<HybridPose> held_by_planes(const OpeningPose& opening,
                                                        const std::vector<PlaneShift>& shifts) const {
     std::vector<HybridPose> poses;
-    for (const CommonShift& shift : common_shifts(shifts, kSameAcrossM, kMostShiftsAcross)) {
+    for (const CommonShift& shift : common_shifts(shifts, kCommonShiftM, kMostShiftsAcross)) {
       poses.push_back(at_thickness(opening, opening.thickness_m - shift.shift_m));
     }
     return poses;

@@ -39,8 +39,8 @@ struct OpeningPoseOptions {
   std::size_t max_poses = 600;
 };
 
-inline constexpr double kOpeningEdgesM =
-    0.15;  ///< edges of one opening lie no farther apart, wall normal taken out
+/// Edges of one opening lie no farther apart, wall normal taken out.
+inline constexpr double kOpeningEdgesM = 0.15;
 inline constexpr double kSameFaceM = 0.3;         ///< faces seen from one side are taken for one within this
 inline constexpr double kSameInWallM = 0.05;      ///< poses nearer than this in the wall, and
 inline constexpr double kSameAcrossWallM = 0.05;  ///< than this across it, are one

@@ -13,8 +13,8 @@
 namespace limen {
 namespace {
 
-constexpr double kOpeningSizesM =
-    0.25;  // widths and heights of one opening differ by no more (splayed reveals)
+/// Widths and heights of one opening differ by no more (splayed reveals).
+constexpr double kOpeningSizesM = 0.25;
 constexpr double kMeetingWallsDeg = 6.0;   // walls that meet differ by no more
 constexpr double kLeastEdgeNoiseM = 0.01;  // least deviation between two detections of one edge
 constexpr double kRobustM = 0.05;          // edges farther off than this lose weight

@@ -33,7 +33,8 @@ struct WallWithOpenings {
 };
 
 /// The openings of a scan by wall, in the order of their first opening. An opening without a side that was
-/// seen, or in a plane that is not a wall, is left out.
+/// seen, or in a plane that is not a wall, is left out. `up`: the vertical, a unit vector, where it is known;
+/// else the openings' own upper side.
 std::vector<WallWithOpenings> walls_with_openings(const Features& features,
                                                   const std::optional<Vector3d>& up = {});
 

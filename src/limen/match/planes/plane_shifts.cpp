@@ -12,10 +12,10 @@ namespace limen {
 namespace {
 
 constexpr double kMeetingDeg = 6.0;     // planes that meet differ by no more
-constexpr double kMeetingM2 = 0.05;     // of bounding rectangles
+constexpr double kMeetingM2 = 0.05;     // that their bounding rectangles have in common
 constexpr double kHoldingCosine = 0.5;  // planes more oblique to the direction do not hold a shift along it
-constexpr std::size_t kMostShiftedPlanes =
-    96;  // of each scan: those seen through openings first, then the largest
+/// Of each scan: those seen through openings first, then the largest.
+constexpr std::size_t kMostShiftedPlanes = 96;
 constexpr std::size_t kMaxPartsShifted = 6;  // of one plane, largest first
 
 /// A frame of the plane whose v is `up` as far as the plane allows.

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/project/retrieve/choose_pairs.h"
 #include "limen/project/run/work.h"

@@ -12,7 +12,7 @@ namespace limen {
 namespace {
 
 constexpr std::size_t kSampledPerPiece = 65536;
-constexpr double kShellsPerM = 20.0;  // chosen at least: fewer leave circles of a plane
+constexpr double kShellsPerM = 20.0;  // wanted of those chosen: fewer leave circles of a plane
 /// Chosen points are sorted within shells of 1 mm; farther out than 33 m all at once.
 constexpr double kSortedM = 1e-3;
 constexpr std::uint64_t kNearShells = 32768;
@@ -47,7 +47,8 @@ std::vector<Ranged> chosen_points(const std::vector<Vector3d>& points, const Vec
                                   std::size_t most, double most_shell_m) {
   const bool all = points.size() <= most;
   const double share = std::min(1.0, static_cast<double>(most) / static_cast<double>(points.size() + 1));
-  const double shell_m = std::min(most_shell_m, std::max(kThinShellM, share / kShellsPerM));
+  double shell_m = most_shell_m;  // halved, so that a few points more or less change nothing
+  while (shell_m > kThinShellM && share < kShellsPerM * shell_m) shell_m *= 0.5;
   std::vector<std::vector<Ranged>> parts((points.size() + kSampledPerPiece - 1) / kSampledPerPiece);
   parallel_for(points.size(), kSampledPerPiece, [&](std::size_t begin, std::size_t end) {
     std::vector<Ranged>& part = parts[begin / kSampledPerPiece];

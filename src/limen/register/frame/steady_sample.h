@@ -12,7 +12,7 @@ namespace limen {
 
 /// Spherical shells of this thickness are chosen or left out as a whole. Thick ones are steady against the
 /// rounding of coordinates, but surfaces square to their radius are in few of them, so that density is lost;
-/// thin ones keep it, as chance would. They are thinner where fewer than twenty a metre would be chosen.
+/// thin ones keep it, as chance would. They are halved while fewer than twenty a metre would be chosen.
 inline constexpr double kThickShellM = 1e-3;
 inline constexpr double kThinShellM = 1e-5;  ///< 32-bit coordinates have steps of 2e-6 m at 20 m
 

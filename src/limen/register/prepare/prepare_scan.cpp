@@ -131,8 +131,8 @@ namespace {
 constexpr double kFramed = 0.1;  // shares of the work, about, by which progress is reported
 constexpr double kExtracted = 0.75;
 constexpr double kSpaceKnown = 0.85;
-constexpr double kFlatNoise = 1.6;  // noise, and what its estimate is off
-constexpr double kFlattestM = 0.005;
+constexpr double kFlatNoise = 1.6;    // noise, and what its estimate is off
+constexpr double kFlattestM = 0.005;  // largest scatter of a piece that is flat but for the noise
 constexpr double kRoundestM = 0.015;
 constexpr double kReachM = 0.3;  // beyond the samples
 

@@ -16,10 +16,10 @@
 // Departures from the printed text:
 // - (9) compares 1 - cos with an angle, and gives no sign: a cluster goes with the one of the other set that
 //   the start brings nearest, each with one (largest |d . d| first), turned to its side;
-// - a double pair is tried only where both sets hold the same |d_v . d_h| within `max_angle_rad` and the two
+// - a double pair is tried only where both sets hold the same |d_v . d_h| within `kMaxAngleRad` and the two
 //   lines pass each other at the same distance within d of (7);
-// - (8) is taken both ways, and over the `max_segments` longest segments of each set;
-// - the number of trials is not given: `trials`;
+// - (8) is taken both ways, and over the `kMaxSegments` longest segments of each set;
+// - the number of trials is not given: `kTrials`;
 // - those of match/planes/direction_clusters.h (algorithm 1), match/segments/segment_distance.h (1 to 8) and
 //   match/solvers/rigid_from_lines.h (10 to 14).
 

@@ -10,9 +10,9 @@
 
 namespace limen {
 
-/// Segments nearer than this, of about one direction, are matched in the last round: several times the noise
-/// of a segment's ends.
+/// Segments nearer than this are matched in the last round: several times the noise of a segment's ends.
 inline constexpr double kLastSegmentGateM = 0.05;
+/// Segments whose directions differ by more are never matched.
 inline constexpr double kMatchedSegmentsDeg = 10.0;
 
 /// How two sets of segments lie on each other under one pose.
