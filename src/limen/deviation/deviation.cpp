@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/deviation/deviation.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/ranked.h"
 #include "limen/deviation/face_offsets.h"
 #include "limen/deviation/measure_elements.h"
 #include "limen/deviation/unmodelled.h"
@@ -16,9 +16,7 @@ namespace limen {
 namespace {
 
 float nth(std::vector<float>& values, double share) {
-  const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), values.begin() + place, values.end());
-  return values[static_cast<std::size_t>(place)];
+  return ranked(values, static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5));
 }
 
 /// Figures of all distances of an element.

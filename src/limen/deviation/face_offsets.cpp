@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/deviation/face_offsets.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "limen/base/parallel.h"
+#include "limen/base/ranked.h"
 
 namespace limen {
 namespace {
@@ -31,9 +31,7 @@ std::vector<double> gaps_by_face(const PointFaces& laid, std::size_t faces) {
   std::vector<double> typical(faces, std::numeric_limits<double>::infinity());
   for (std::size_t k = 0; k < faces; ++k) {
     if (static_cast<double>(gaps[k].size()) <= kContestedShare * static_cast<double>(asked[k])) continue;
-    const auto middle = gaps[k].begin() + static_cast<std::ptrdiff_t>(gaps[k].size() / 2);
-    std::nth_element(gaps[k].begin(), middle, gaps[k].end());
-    typical[k] = static_cast<double>(*middle);
+    typical[k] = static_cast<double>(median(gaps[k]));
   }
   return typical;
 }

@@ -15,6 +15,7 @@
 
 #include "limen/base/drawn_steps.h"
 #include "limen/base/error.h"
+#include "limen/base/ranked.h"
 
 namespace limen {
 namespace {
@@ -54,11 +55,9 @@ std::string stated(double metres) {
 double side_of(const std::vector<Vector3d>& points, int axis) {
   std::vector<double> values;
   for_drawn_steps(points.size(), kLookedAt, [&](std::size_t i) { values.push_back(points[i][axis]); });
-  const auto out = static_cast<std::ptrdiff_t>(values.size() / kLeftOut);
-  std::nth_element(values.begin(), values.begin() + out, values.end());
-  const double low = values[static_cast<std::size_t>(out)];
-  std::nth_element(values.begin(), values.end() - 1 - out, values.end());
-  return *(values.end() - 1 - out) - low;
+  const std::size_t out = values.size() / kLeftOut;
+  const double low = ranked(values, out);
+  return ranked(values, values.size() - 1 - out) - low;
 }
 
 double longest_side_of(const BimModel& model) {

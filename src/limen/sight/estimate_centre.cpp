@@ -221,8 +221,8 @@ bool evenly_thinned(const Features& features) {
   std::vector<double> densities;
   for (const Tile& tile : full_tiles(features)) densities.push_back(tile.log_density);
   if (densities.size() < kMinTiles) return false;
-  std::sort(densities.begin(), densities.end());
-  return densities[densities.size() * 98 / 100] - densities[densities.size() * 3 / 4] < kThinnedRange;
+  const double quarter = ranked(densities, densities.size() * 3 / 4);
+  return ranked(densities, densities.size() * 98 / 100) - quarter < kThinnedRange;
 }
 
 std::optional<TestedCentre> test_centre(const Features& features, const Vector3d& claim) {

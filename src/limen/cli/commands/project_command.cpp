@@ -396,7 +396,9 @@ void replace_files(const std::filesystem::path& folder,
     std::error_code fault;
     std::filesystem::remove(folder / name, fault);
     if (fault)
-      session.note(fmt::format("{} is of an earlier run and cannot be removed", (folder / name).string()));
+      session.note(
+          fmt::format("{} is of an earlier run and could not be removed: close it and remove it by hand",
+                      (folder / name).string()));
   }
 }
 

@@ -19,9 +19,9 @@ struct CoherentOptions {
 
 /// Every point goes to the plane that is likeliest to have been met there: by its distance, in noises, and by
 /// how many points around chose it before. With distances alone a quarter of the points between a mullion and
-/// its frame, 4 mm apart at 3 mm noise, would take the wrong one. This is one round of several; `sums`, of
-/// the planes' points about the curve's anchor, follows. A plane's label is its place in `sums`; a point that
-/// no plane explains has -1.
+/// its frame, 4 mm apart at 3 mm noise, would take the wrong one. One round: the choices around are those
+/// before the call. `sums`, of the planes' points about the curve's anchor, follows. A plane's label is its
+/// place in `sums`; a point that no plane explains has -1.
 void coherent_labels(const SettleScene& scene, const CoherentOptions& options,
                      std::vector<std::int32_t>& labels, std::vector<PointMoments>& sums);
 

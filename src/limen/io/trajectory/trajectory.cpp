@@ -12,6 +12,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/ranked.h"
 
 namespace limen {
 namespace {
@@ -125,9 +126,7 @@ const Trajectory* covering_trajectory(const Scan& scan,
             (scan.local_origin + (scan.mobile() ? scan.centres[i] : scan.points[i]) - *place).norm());
     }
     if (distances.empty() || 2 * distances.size() < asked || distances.size() <= most) continue;
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    if (*middle > (scan.mobile() ? kOtherWayM : kFarthestRangeM)) continue;
+    if (median(distances) > (scan.mobile() ? kOtherWayM : kFarthestRangeM)) continue;
     best = trajectory.get();
     most = distances.size();
   }

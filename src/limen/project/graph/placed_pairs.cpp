@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "limen/base/parallel.h"
+#include "limen/base/ranked.h"
 #include "limen/register/judge/score_pose.h"
 
 namespace limen {
@@ -33,9 +34,7 @@ evidence_table::Contradiction learned_contradiction(const std::vector<PoseSurfac
   }
   evidence_table::Contradiction learned = evidence_table::kPlaced;
   if (shares.empty()) return learned;
-  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
-  std::nth_element(shares.begin(), middle, shares.end());
-  learned.right.mean = std::clamp(*middle, learned.right.mean, kMostRight);
+  learned.right.mean = std::clamp(median(shares), learned.right.mean, kMostRight);
   return learned;
 }
 

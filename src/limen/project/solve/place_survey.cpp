@@ -15,6 +15,7 @@
 #include "limen/base/angles.h"
 #include "limen/base/length_unit.h"
 #include "limen/base/progress.h"
+#include "limen/base/ranked.h"
 #include "limen/geometry/linear.h"
 #include "limen/project/control/control_datum.h"
 #include "limen/project/solve/joint_problem.h"
@@ -349,13 +350,11 @@ class TargetsAgainstScans {
   [[nodiscard]] bool all_wrong() const { return wrong_.size() > right_; }
   [[nodiscard]] std::string words() const {
     std::vector<double> missed = missed_m_;
-    const auto middle = missed.begin() + static_cast<std::ptrdiff_t>(missed.size() / 2);
-    std::nth_element(missed.begin(), middle, missed.end());
     return fmt::format(
         "the targets are not used: they are {:.2f} m apart in {} of {} pairs of scans whose surfaces agree; "
         "check "
         "their unit and the order of their columns",
-        *middle, wrong_.size(), wrong_.size() + right_);
+        median(missed), wrong_.size(), wrong_.size() + right_);
   }
 
  private:

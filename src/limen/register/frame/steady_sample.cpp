@@ -12,7 +12,8 @@ namespace limen {
 namespace {
 
 constexpr std::size_t kSampledPerPiece = 65536;
-constexpr double kShellsPerM = 20.0;  // wanted of those chosen: fewer leave circles of a plane
+/// Wanted of those chosen, so that six cut a cube of 0.32 m (frame_planes.cpp): of fewer, circles are left.
+constexpr double kShellsPerM = 20.0;
 /// Chosen points are sorted within shells of 1 mm; farther out than 33 m all at once.
 constexpr double kSortedM = 1e-3;
 constexpr std::uint64_t kNearShells = 32768;
