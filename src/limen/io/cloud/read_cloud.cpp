@@ -3,6 +3,8 @@
 #include "limen/io/cloud/read_cloud.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <functional>
 #include <set>
 #include <utility>
 
@@ -11,6 +13,7 @@
 #include "limen/base/error.h"
 #include "limen/base/text.h"
 #include "limen/io/cloud/thin_cloud.h"
+#include "limen/io/table/packed_rows.h"
 #include "limen/io/table/scan_builder.h"
 
 namespace limen {
@@ -87,17 +90,36 @@ ThinOptions share_of(const OpenPoints& input, std::size_t cloud, std::uint64_t m
   return thinning;
 }
 
-ThinnedCloud thinned_cloud(const OpenPoints& input, std::size_t cloud, const ThinOptions& thinning,
-                           Reading& reading) {
-  CloudThinner thinner(thinning, input.file().clouds()[cloud].points);
+void for_each_piece(const OpenPoints& input, std::size_t cloud, Reading& reading,
+                    const std::function<void(const RecordTable&)>& take) {
   const std::unique_ptr<PointStream> stream = input.file().read(cloud);
   while (const std::optional<RecordTable> piece = stream->next(kStreamRows)) {
-    thinner.add(*piece);
+    take(*piece);
     reading.passed(piece->rows);
     reading.forget();
   }
-  return thinner.finish();
 }
+
+/// Every so many rows of a cloud that comes in pieces: as dense everywhere as it was measured, by a factor.
+class EveryFewRows {
+ public:
+  explicit EveryFewRows(std::uint64_t expected) : step_(std::max<std::uint64_t>(1, expected / kEnough)) {}
+
+  void add(const RecordTable& piece) {
+    rows_.require_columns(piece);
+    for (; next_ < piece.rows; next_ += step_) rows_.append(piece, next_);
+    next_ -= piece.rows;
+  }
+  /// Points into this object.
+  [[nodiscard]] RecordTable table() const { return rows_.view(); }
+
+ private:
+  static constexpr std::uint64_t kEnough = 200000;
+
+  PackedRows rows_;
+  std::uint64_t step_;
+  std::uint64_t next_ = 0;  ///< row of the next piece
+};
 
 /// What a file says of a cloud still holds for some of its points, but not their order.
 TableFacts without_order(TableFacts facts) {
@@ -156,14 +178,22 @@ ScanFile read_thinned(const OpenPoints& input, const ReadOptions& options, Monit
   for (std::size_t k = 0; k < input.file().clouds().size(); ++k) {
     const CloudFacts& facts = input.file().clouds()[k];
     if (facts.points == 0) continue;
-    const ThinnedCloud thinned = thinned_cloud(input, k, share_of(input, k, options.memory_bytes), reading);
+    CloudThinner thinner(share_of(input, k, options.memory_bytes), facts.points);
+    EveryFewRows as_measured(facts.points);
+    for_each_piece(input, k, reading, [&](const RecordTable& piece) {
+      thinner.add(piece);
+      as_measured.add(piece);
+    });
+    const ThinnedCloud thinned = thinner.finish();
     file.notes.push_back(
         fmt::format("{}: thinned from {} points to {} to stay within the memory, spacing about {:.3f} m",
                     facts.table.name, thinned.read, thinned.table.rows, thinned.spacing_m));
     file.dropped += thinned.unusable;
     // A grid of returns has a place for those that are missing.
     if (input.format() != PointFormat::ptx) file.unusable += thinned.unusable;
-    file = with_scan(std::move(file), without_angles(thinned.table), without_order(facts.table), options);
+    const TableFacts unordered = without_order(facts.table);
+    const ScanFile some = with_scan({}, without_angles(as_measured.table()), unordered, options);
+    file = with_scan(std::move(file), without_angles(thinned.table), unordered, options, &some.scans.front());
     file.scans.back().topology = {};
   }
   require_scans(file, input);
@@ -174,13 +204,11 @@ std::optional<Vector3d> settled_centre(const OpenPoints& input, std::size_t clou
   const CloudFacts& facts = input.file().clouds()[cloud];
   if (facts.table.centre_unknown) return {};
   if (facts.table.centre) return facts.table.offset + *facts.table.centre;
-  constexpr std::uint64_t kEnough = 100000;
-  ThinOptions thinning;
-  thinning.most_points = kEnough;
   Reading reading(input, monitor);
-  const ThinnedCloud some = thinned_cloud(input, cloud, thinning, reading);
-  if (some.table.rows == 0) return {};
-  const ScanFile file = with_scan({}, without_angles(some.table), without_order(facts.table), {});
+  EveryFewRows some(facts.points);
+  for_each_piece(input, cloud, reading, [&](const RecordTable& piece) { some.add(piece); });
+  if (some.table().rows == 0) return {};
+  const ScanFile file = with_scan({}, without_angles(some.table()), without_order(facts.table), {});
   const Scan& scan = file.scans.front();
   if (!scan.centre_known() || scan.mobile()) return {};
   return scan.local_origin + scan.centres[0];

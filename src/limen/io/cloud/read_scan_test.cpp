@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/io/cloud/read_scan.h"
 
+#include <cmath>
+
 #include "support/test_support.h"
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -217,6 +220,32 @@ TEST(ReadScan, RandomDamageNeverCrashes) {
     }
   }
   EXPECT_GT(read, 50);
+}
+
+/// Bars a metre away, and a wall far behind them, a fifth of all points: thinned, most points lie on the
+/// wall.
+std::string behind_bars() {
+  std::string text;
+  int number = 0;
+  for (double turn = -1.5; turn < 1.5; turn += 0.005) {
+    for (double rise = -0.6; rise < 0.6; rise += 0.005) {
+      const double range = number++ % 5 == 0 ? 4.0 : 1.0;
+      text += fmt::format("{:.4f} {:.4f} {:.4f}\n", range * std::cos(turn) * std::cos(rise),
+                          range * std::sin(turn) * std::cos(rise), range * std::sin(rise));
+    }
+  }
+  return text;
+}
+
+TEST(ReadScan, ToThinACloudChangesNothingAboutItsScanner) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("bars.xyz", behind_bars());
+  ReadOptions options;
+  EXPECT_EQ(read_scan(file, options).centre_source, PlaceSource::assumed);
+  options.memory_bytes = 1000000;
+  const Scan thinned = read_scan(file, options);
+  EXPECT_LT(thinned.size(), 50000U);
+  EXPECT_EQ(thinned.centre_source, PlaceSource::assumed);
 }
 
 }  // namespace

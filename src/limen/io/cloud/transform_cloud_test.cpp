@@ -199,6 +199,17 @@ TEST(TransformCloud, TextKeepsTheRestOfItsLines) {
       "# made by hand\r\n 11.5000,\t22.2500 33.123456 0.5 abc\r\n\r\n14.0000 25.2500 36.0000 0.75 \"d\"\r\n");
 }
 
+TEST(TransformCloud, TextStatesWhereTheScannerIsThen) {
+  const TemporaryFolder folder;
+  const auto in = folder.write("in.xyz", "// scanner_position 1 2 3\r\n// x y z\r\n1.5 2 3\r\n4 5 6\r\n");
+  transform_cloud(in, Rigid3{Matrix3d::Identity(), {652000.0, 6840000.0, 35.0}}, folder / "out.xyz");
+  EXPECT_EQ(slurp(folder / "out.xyz").substr(0, 66),
+            "// scanner_position 652001.000000 6840002.000000 38.000000\r\n// x y");
+  const Scan scan = read_scan(folder / "out.xyz");
+  ASSERT_TRUE(scan.centre_known());
+  EXPECT_LT((scan.local_origin + scan.centres[0] - Vector3d(652001, 6840002, 38)).norm(), 1e-6);
+}
+
 TEST(TransformCloud, TextMovesTheColumnsThatAreNamed) {
   const TemporaryFolder folder;
   const auto in = folder.write("in.csv", "nx;ny;nz;id;x;y;z\n1;0;0;7;1;2;3\n");

@@ -315,7 +315,8 @@ std::string stated(const Vector3d& x) {
 }
 
 /// The scanner position of a scan whose points carry none, and a sentence about how it was found.
-std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions& options) {
+std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions& options,
+                          const Scan& as_measured) {
   if (options.origin) {
     scan.centres = {*options.origin - scan.local_origin};
     scan.centre_source = PlaceSource::stated_by_user;
@@ -327,9 +328,12 @@ std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions
     scan.centres = {facts.offset + *facts.centre - scan.local_origin};
     return {};
   }
+  const auto can_be = [&](const Vector3d& candidate) {
+    return can_be_scanner(as_measured.points, scan.local_origin + candidate - as_measured.local_origin);
+  };
   if (facts.possible_centre) {
     const Vector3d candidate = facts.offset + *facts.possible_centre - scan.local_origin;
-    if (can_be_scanner(scan.points, candidate)) {
+    if (can_be(candidate)) {
       scan.centres = {candidate};
       // PCD writes 0 0 0 where nobody said anything.
       if (facts.possible_centre->isZero()) scan.centre_source = PlaceSource::assumed;
@@ -338,7 +342,7 @@ std::string settle_centre(Scan& scan, const TableFacts& facts, const ReadOptions
     }
   }
   const bool zero_is_near = !facts.has_offset && scan.local_origin.isZero();
-  if (zero_is_near && can_be_scanner(scan.points, Vector3d::Zero())) {
+  if (zero_is_near && can_be(Vector3d::Zero())) {
     scan.centres = {Vector3d::Zero()};
     scan.centre_source = PlaceSource::assumed;
     return "0 0 0 is taken as the scanner position";
@@ -453,7 +457,7 @@ void check_centres(const Scan& scan) {
               "bring x_origin, y_origin and z_origin into the frame of x, y and z, or leave them out");
 }
 
-ScanFile ScanBuilder::finish(ScanFile file) {
+ScanFile ScanBuilder::finish(ScanFile file, const Scan* as_measured) {
   Parts& parts = *parts_;
   const TableFacts& facts = parts.facts;
   file.metres_per_unit = unit_of(facts);
@@ -485,7 +489,9 @@ ScanFile ScanBuilder::finish(ScanFile file) {
   if (!parts.options.trajectory) check_centres(scan);
   scan.level = parts.options.level;
   const bool given = parts.options.origin || parts.options.trajectory;
-  std::string note = mixed.empty() || given ? settle_centre(scan, facts, parts.options) : std::move(mixed);
+  std::string note = mixed.empty() || given
+                         ? settle_centre(scan, facts, parts.options, as_measured ? *as_measured : scan)
+                         : std::move(mixed);
   if (!note.empty()) file.notes.push_back(std::move(note));
   file.dropped += unusable;
   file.unusable += unusable - std::min(unusable, facts.missing);
@@ -494,10 +500,10 @@ ScanFile ScanBuilder::finish(ScanFile file) {
 }
 
 ScanFile with_scan(ScanFile file, const RecordTable& table, const TableFacts& facts,
-                   const ReadOptions& options) {
+                   const ReadOptions& options, const Scan* as_measured) {
   ScanBuilder builder(facts, options);
   builder.add(table);
-  return builder.finish(std::move(file));
+  return builder.finish(std::move(file), as_measured);
 }
 
 }  // namespace limen

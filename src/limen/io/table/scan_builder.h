@@ -44,7 +44,9 @@ class ScanBuilder {
   void add(const RecordTable& table);
   /// Appends to `notes` and `dropped` of `file` and adds the scan to it. Throws Error where no point is
   /// usable. To be called once.
-  ScanFile finish(ScanFile file);
+  /// `as_measured`: of a thinned table some of its points before, as dense as they were measured; null: it
+  /// was not thinned.
+  ScanFile finish(ScanFile file, const Scan* as_measured = nullptr);
 
  private:
   struct Parts;
@@ -53,6 +55,6 @@ class ScanBuilder {
 
 /// The scan of one table.
 ScanFile with_scan(ScanFile file, const RecordTable& table, const TableFacts& facts,
-                   const ReadOptions& options);
+                   const ReadOptions& options, const Scan* as_measured = nullptr);
 
 }  // namespace limen

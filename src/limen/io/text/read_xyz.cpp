@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -37,14 +38,16 @@ std::size_t leading_numbers(std::string_view line) {
   return count;
 }
 
+std::string_view without_comment_sign(std::string_view line) {
+  line.remove_prefix(std::min(line.find_first_not_of("/#% "), line.size()));
+  return line;
+}
+
 /// The column names in a line, lower case, units in brackets taken off; empty where x, y and z are not among
 /// them.
 Names column_names(std::string_view line) {
-  while (!line.empty() &&
-         (line.front() == '/' || line.front() == '#' || line.front() == '%' || line.front() == ' '))
-    line.remove_prefix(1);
   Names names;
-  for (const std::string_view token : split_tokens(line)) {
+  for (const std::string_view token : split_tokens(without_comment_sign(line))) {
     names.push_back(lower_case(token.substr(0, token.find_first_of("[("))));
   }
   for (const char* wanted : {"x", "y", "z"}) {
@@ -63,6 +66,7 @@ struct TextHeader {
   std::size_t odd_number = 0;
   std::string_view row;          ///< the first row; empty where there is none
   bool ended_by_return = false;  ///< which is not followed by a line feed
+  std::optional<Vector3d> centre;
 };
 
 bool is_comment(std::string_view line) {
@@ -99,6 +103,7 @@ TextHeader parse_text_header(std::string_view bytes) {
       header.names = names_for(numbers, lines_of_names);
       return header;
     }
+    if (const std::optional<Vector3d> centre = scanner_position_in(line.text)) header.centre = centre;
     Names names = numbers == 0 ? column_names(line.text) : Names();
     if (!names.empty()) lines_of_names.push_back(std::move(names));
     if (numbers == 0 && lines_of_names.empty() && !is_comment(line.text) && header.odd_number == 0) {
@@ -216,6 +221,19 @@ std::size_t line_count(std::string_view text) {
 
 }  // namespace
 
+std::optional<Vector3d> scanner_position_in(std::string_view line) {
+  if (!is_comment(line)) return {};
+  const std::vector<std::string_view> tokens = split_tokens(without_comment_sign(line));
+  if (tokens.size() != 4 || lower_case(tokens[0]) != "scanner_position") return {};
+  Vector3d x;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::optional<double> number = parse_number(tokens[k + 1]);
+    if (!number || !std::isfinite(*number)) return {};
+    x[static_cast<Eigen::Index>(k)] = *number;
+  }
+  return x;
+}
+
 bool looks_like_xyz(std::string_view bytes) {
   const std::string_view head = bytes.substr(0, 65536);
   if (head.substr(0, 4096).find('\0') != std::string_view::npos) return false;
@@ -246,6 +264,7 @@ ScanFile read_xyz(std::string_view bytes, const std::string& name, const ReadOpt
   }
   TableFacts facts;
   facts.name = name;
+  facts.centre = header.centre;
   auto numbers = std::make_shared<std::vector<double>>(std::move(parsed.numbers));
   return with_scan(std::move(file), table_of_numbers(std::move(numbers), cloud.names), facts, options);
 }
@@ -262,6 +281,7 @@ std::unique_ptr<PointFile> open_xyz(std::string_view bytes, const std::string& n
   const TextCloud text = text_of(bytes, header, name);
   CloudSource cloud;
   cloud.facts.table.name = name;
+  cloud.facts.table.centre = header.centre;
   cloud.facts.points = line_count(text.text);
   cloud.facts.fields = text.names;
   cloud.open = [text] { return stream_of_text(text); };

@@ -54,6 +54,16 @@ TEST(ReadXyz, ColumnsWithoutNamesFindTheirMeaning) {
   EXPECT_EQ(seven.colours, (std::vector<std::uint8_t>{10, 20, 30}));
 }
 
+TEST(ReadXyz, ACommentStatesTheScannersPosition) {
+  const Scan stated = read_xyz("// scanner_position 1.5 2 -3\n// x y z\n1 2 3\n4 5 6\n", "t").scans.at(0);
+  ASSERT_TRUE(stated.centre_known());
+  EXPECT_EQ(Vector3d(stated.local_origin + stated.centres[0]), Vector3d(1.5, 2, -3));
+  EXPECT_EQ(stated.centre_source, PlaceSource::stated_by_file);
+  for (const char* line :
+       {"// scanner_position 1.5 2\n", "// scanner_position 1 2 three\n", "// scanner 1 2 3\n"})
+    EXPECT_FALSE(scanner_position_in(line)) << line;
+}
+
 TEST(ReadXyz, NumbersWithoutANameAreSaidToBeUnused) {
   const ScanFile file = read_xyz("x y z\n1 2 3 4 5\n", "t");
   EXPECT_EQ(file.scans.at(0).points, std::vector<Vector3d>{Vector3d(1, 2, 3)});

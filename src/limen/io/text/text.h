@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,14 +45,19 @@ class LineMover {
 TransformedCloud transform_text(const NamedBytes& input, const Rigid3& target_from_source,
                                 const std::filesystem::path& output);
 
+/// Where a comment line "// scanner_position X Y Z" has the scanner, and such a line.
+std::optional<Vector3d> scanner_position_in(std::string_view line);
+std::string scanner_position_line(const Vector3d& centre);
+
 /// True where the bytes are text whose first lines are rows of numbers (PTS, XYZ, CSV).
 bool looks_like_xyz(std::string_view bytes);
 
 /// Reads points from text: PTS with its count line, XYZ, CSV and the like from memory. Separators are blanks,
-/// tabs, commas and semicolons; numbers have decimal points. Lines that begin with #, % or // are comments; a
-/// line with names x, y and z, a comment or not, names the columns. Without names: 3 columns are x y z, 4 end
-/// with intensity, 7 with intensity red green blue, 6 with red green blue where these are whole numbers up to
-/// 255; further columns are passed over. `name` is for messages. Throws Error that names file and line.
+/// tabs, commas and semicolons; numbers have decimal points. Lines that begin with #, % or // are comments,
+/// of which one may state the scanner's position; a line with names x, y and z, a comment or not, names the
+/// columns. Without names: 3 columns are x y z, 4 end with intensity, 7 with intensity red green blue, 6 with
+/// red green blue where these are whole numbers up to 255; further columns are passed over. `name` is for
+/// messages. Throws Error that names file and line.
 ScanFile read_xyz(std::string_view bytes, const std::string& name, const ReadOptions& options = {});
 
 /// How the rows of a text are to be understood.

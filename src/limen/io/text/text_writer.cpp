@@ -55,9 +55,7 @@ class TextWriter : public CloudWriter {
   [[nodiscard]] std::string head() const {
     std::string text;
     if (!commas_) {
-      if (plan_.centre)
-        text += fmt::format("// scanner_position {:.6f} {:.6f} {:.6f}\n", plan_.centre->x(),
-                            plan_.centre->y(), plan_.centre->z());
+      if (plan_.centre) text += scanner_position_line(*plan_.centre) + "\n";
       for (const std::string& crs : plan_.georeference) text += "// crs " + one_line(crs) + "\n";
     }
     std::string names;
@@ -106,6 +104,10 @@ class TextWriter : public CloudWriter {
 };
 
 }  // namespace
+
+std::string scanner_position_line(const Vector3d& centre) {
+  return fmt::format("// scanner_position {:.6f} {:.6f} {:.6f}", centre.x(), centre.y(), centre.z());
+}
 
 std::unique_ptr<CloudWriter> make_text_writer(const std::filesystem::path& path, const CloudPlan& plan) {
   return std::make_unique<TextWriter>(path, plan);

@@ -41,6 +41,23 @@ std::string_view take_piece(std::string_view& text) {
   return piece;
 }
 
+/// The lines before the rows; a comment that states the scanner's position states the new one.
+std::string moved_head(std::string_view head, const Rigid3& target_from_source) {
+  std::string moved;
+  while (!head.empty()) {
+    const std::string_view line = head.substr(0, std::min(head.find('\n'), head.size() - 1) + 1);
+    head.remove_prefix(line.size());
+    const std::string_view words = line.substr(0, line.find_first_of("\r\n"));
+    if (const std::optional<Vector3d> centre = scanner_position_in(words)) {
+      moved += scanner_position_line(target_from_source * *centre);
+      moved += line.substr(words.size());
+    } else {
+      moved += line;
+    }
+  }
+  return moved;
+}
+
 }  // namespace
 
 LineMover::LineMover(const std::vector<std::string>& names, const Rigid3& motion)
@@ -113,7 +130,7 @@ TransformedCloud transform_text(const NamedBytes& input, const Rigid3& target_fr
   const auto stream = file_in_pieces->read(0);
   while (const auto piece = stream->next(std::size_t{1} << 18U)) result.points += piece->rows;
   AtomicFile file(output);
-  file.write(input.bytes.substr(0, layout.body));
+  file.write(moved_head(input.bytes.substr(0, layout.body), target_from_source));
   std::string_view rest = input.bytes.substr(layout.body);
   while (!rest.empty()) {
     const char* const begin = rest.data();
