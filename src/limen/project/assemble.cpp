@@ -54,9 +54,11 @@ class Assembler {
     adjust(made);
     graph_ = made.graph;
     pair_of_ = made.pair_of;
+    pair_in_place_ = made.pair_in_place;
     settle_frame();
     for (std::size_t n = 0; n < nodes_.size(); ++n) tell_scan(n);
     for (std::size_t k = 0; k < graph_.links.size(); ++k) tell_link(k);
+    for (std::size_t k = 0; k < graph_.measured_in_place.size(); ++k) tell_in_place(k);
     tell_moved();
     state_look_alikes();
     tell_survey();
@@ -353,8 +355,7 @@ class Assembler {
     };
     stated.target_from_source = world(link.poses[taken]);
     if (!link.by_targets) stated.agreeing_m2 = link.poses[taken].agreeing_m2;
-    const Vector6d sigma = link.poses[taken].covariance.diagonal().cwiseSqrt();
-    stated.sigma = {sigma.head<3>(), sigma.tail<3>(), link.poses[taken].centre + target.local_origin};
+    stated.sigma = sigma_of(link.poses[taken], target);
     for (std::size_t p = 0; p < link.poses.size(); ++p) {
       if (p != taken)
         stated.alternatives.push_back(
@@ -380,6 +381,35 @@ class Assembler {
       stated.reason = link.by_targets ? "given by the targets that both see" : "given in the file";
     }
     result_.links.push_back(std::move(stated));
+  }
+
+  void tell_in_place(std::size_t k) {
+    if (!solved_.in_place[k]) return;
+    const PoseEdge& measured = graph_.measured_in_place[k];
+    const ScanDigest& source = digest(measured.source);
+    const ScanDigest& target = digest(measured.target);
+    const RegistrationResult& pair = pairs_[static_cast<std::size_t>(pair_in_place_[k])].result;
+    ProjectLink stated;
+    stated.source = static_cast<int>(nodes_[static_cast<std::size_t>(measured.source)].scan);
+    stated.target = static_cast<int>(nodes_[static_cast<std::size_t>(measured.target)].scan);
+    stated.solved.state = LinkState::in_place;
+    stated.solved.pose = 0;
+    stated.target_from_source =
+        to_world(measured.pose.target_from_source, source.local_origin, target.local_origin);
+    stated.agreeing_m2 = measured.pose.agreeing_m2;
+    stated.sigma = sigma_of(measured.pose, target);
+    stated.look_alike = pair.others ? pair.others->look_alike : 0.0;
+    stated.chance = 1.0 - measured.pose.probability - stated.look_alike;
+    stated.pair = pair.outcome;
+    stated.matches = pair.matches;
+    stated.openings = pair.openings;
+    stated.reason = "measured from where the other links place both scans";
+    result_.links.push_back(std::move(stated));
+  }
+
+  static PoseSigma sigma_of(const LinkPose& pose, const ScanDigest& target) {
+    const Vector6d sigma = pose.covariance.diagonal().cwiseSqrt();
+    return {sigma.head<3>(), sigma.tail<3>(), pose.centre + target.local_origin};
   }
 
   static bool is_sure(Outcome pair) { return pair == Outcome::registered || pair == Outcome::probable; }
@@ -460,7 +490,7 @@ class Assembler {
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
       const RegistrationResult& pair = pairs_[k].result;
       const bool linked = std::find(pair_of_.begin(), pair_of_.end(), static_cast<int>(k)) != pair_of_.end();
-      if (linked || pair.outcome == Outcome::no_match) continue;
+      if (linked || pairs_[k].placed || pair.outcome == Outcome::no_match) continue;
       ProjectLink stated;
       stated.source = static_cast<int>(nodes_[pairs_[k].source].scan);
       stated.target = static_cast<int>(nodes_[pairs_[k].target].scan);
@@ -614,8 +644,9 @@ class Assembler {
   ProjectResult& result_;
   PoseGraph graph_;
   SolvedGraph solved_;
-  std::vector<int> pair_of_;     ///< of each link: index into pairs_, -1: given
-  std::vector<int> frame_node_;  ///< of each component
+  std::vector<int> pair_of_;        ///< of each link: index into pairs_, -1: given
+  std::vector<int> pair_in_place_;  ///< the same of each pose measured in place
+  std::vector<int> frame_node_;     ///< of each component
 };
 
 }  // namespace

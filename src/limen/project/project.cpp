@@ -17,6 +17,7 @@
 #include "limen/project/control/control_file.h"
 #include "limen/project/inputs/project_files.h"
 #include "limen/project/retrieve/choose_pairs.h"
+#include "limen/project/run/loose_pairs.h"
 #include "limen/project/run/prepare_files.h"
 #include "limen/project/run/store_jobs.h"
 #include "limen/project/run/try_pairs.h"
@@ -65,7 +66,7 @@ class Run {
     words_ = words_by_nodes(decisions_, nodes_, result_.scans);
     std::vector<TriedPair> tried = few() ? try_all(every_pair()) : waves();
     try_named(tried);
-    try_any_turn(tried);
+    try_last(tried);
     engine_.reset();
     monitor_.begin_stage("adjustment");
     result_.pairs_tried = tried.size();
@@ -314,9 +315,11 @@ class Run {
   }
 
   std::vector<TriedPair> try_all(const PairList& pairs, PairSearch search = PairSearch::level) {
+    return try_all(pairs, search, words_.starts);
+  }
+  std::vector<TriedPair> try_all(const PairList& pairs, PairSearch search, const PairStarts& starts) {
     status_.pairs += pairs.size();
-    const PairWork work{nodes_,        result_.scans, store_, options_.registering,
-                        words_.starts, engine_.get(), folder_};
+    const PairWork work{nodes_, result_.scans, store_, options_.registering, starts, engine_.get(), folder_};
     std::vector<TriedPair> tried = try_pairs(pairs, work, search, status_, monitor_);
     for (const TriedPair& pair : tried) {
       if (pair.fault.empty()) continue;
@@ -349,9 +352,19 @@ class Run {
     std::sort(tried.begin(), tried.end(), by_nodes);
   }
 
+  /// What is tried last, by where all scans are by now.
+  void try_last(std::vector<TriedPair>& tried) {
+    ProjectGraph made = make_graph(nodes_, tried, words_);
+    SolvedGraph solved = solve_graph(made.graph, risk());
+    if (try_any_turn(solved, tried)) {
+      made = make_graph(nodes_, tried, words_);
+      solved = solve_graph(made.graph, risk());
+    }
+    measure_in_place(loose_pairs(nodes_, made, solved), tried);
+  }
+
   /// Scans that seem to stand upright may not: those that nothing holds are tried once more, any way round.
-  void try_any_turn(std::vector<TriedPair>& tried) {
-    const SolvedGraph solved = solve_graph(make_graph(nodes_, tried, words_).graph, risk());
+  bool try_any_turn(const SolvedGraph& solved, std::vector<TriedPair>& tried) {
     PairList again;
     std::vector<std::size_t> places;
     for (std::size_t k = 0; k < tried.size(); ++k) {
@@ -364,6 +377,35 @@ class Run {
     }
     std::vector<TriedPair> results = try_all(again, PairSearch::any_turn);
     for (std::size_t k = 0; k < results.size(); ++k) tried[places[k]] = std::move(results[k]);
+    return !again.empty();
+  }
+
+  /// Scans that are held only loosely to one another are measured from where all links place them.
+  void measure_in_place(const std::vector<LoosePair>& loose, std::vector<TriedPair>& tried) {
+    PairList pairs;
+    PairStarts starts;
+    for (const LoosePair& pair : loose) {
+      pairs.emplace_back(pair.source, pair.target);
+      starts.emplace(pairs.back(), start_in_place(pair));
+    }
+    std::vector<TriedPair> measured = try_all(pairs, PairSearch::level, starts);
+    for (std::size_t k = 0; k < loose.size(); ++k) {
+      measured[k].placed = loose[k].placed;
+      tried.push_back(std::move(measured[k]));
+    }
+  }
+
+  [[nodiscard]] StartPrior start_in_place(const LoosePair& pair) const {
+    constexpr double kLeastM = 0.05;
+    constexpr double kLeastRad = 0.005;
+    const Vector6d sigma = pair.placed.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    StartPrior start;
+    start.target_from_source =
+        to_world(pair.placed.target_from_source, nodes_[pair.source].digest.local_origin,
+                 nodes_[pair.target].digest.local_origin);
+    start.sigma_m = std::max(kLeastM, sigma.tail<3>().maxCoeff());
+    start.sigma_rad = std::max(kLeastRad, sigma.head<3>().maxCoeff());
+    return start;
   }
 
   [[nodiscard]] PairList every_pair() const {

@@ -190,12 +190,12 @@ std::string summary(const ProjectResult& result, const std::string& folder) {
       if (answer.kind != DecisionKind::forget) text += "  " + decide_line(folder, answer) + "\n";
     }
   }
-  std::size_t counts[5] = {};
+  std::size_t counts[6] = {};
   for (const ProjectLink& link : result.links) ++counts[static_cast<std::size_t>(link.solved.state)];
   text += fmt::format(
-      "links       {} verified, {} unchecked (bridge), {} ambiguous, {} rejected, {} weak, of {} pairs "
-      "tried\n",
-      counts[0], counts[1], counts[2], counts[3], counts[4], result.pairs_tried);
+      "links       {} verified, {} unchecked (bridge), {} ambiguous, {} rejected, {} weak, {} measured "
+      "in place, of {} pairs tried\n",
+      counts[0], counts[1], counts[2], counts[3], counts[4], counts[5], result.pairs_tried);
   if (const std::optional<BundleError> bundle = bundle_error(result))
     text += fmt::format("bundle      {:.1f} mm RMS of {} pairs of planes; the worst link {:.1f} mm\n",
                         1e3 * bundle->rms_m, bundle->planes, 1e3 * bundle->worst_rms_m);

@@ -14,6 +14,8 @@ const char* to_string(LinkState state) {
       return "ambiguous";
     case LinkState::rejected:
       return "rejected";
+    case LinkState::in_place:
+      return "in_place";
     case LinkState::weak:
       break;
   }

@@ -8,6 +8,7 @@
 
 #include "limen/model/look_alike_evidence.h"
 #include "limen/project/graph/link_pose.h"
+#include "limen/project/graph/pose_adjustment.h"
 #include "limen/project/graph/pose_query.h"
 
 namespace limen {
@@ -47,6 +48,9 @@ struct PoseGraph {
   int anchor = -1;  ///< a node that is the frame of the component it is part of, -1: none
   /// Of each node, or of none, where its scanner was, in its own coordinates; of static scans.
   std::vector<std::optional<Vector3d>> scanners;
+  /// Poses that were measured from where the links place two nodes: they say how exactly these lie there, and
+  /// nothing of which place it is.
+  std::vector<PoseEdge> measured_in_place;
 };
 
 /// What became of a link.
@@ -55,7 +59,8 @@ enum class LinkState {
   bridge,     ///< accepted, but part of no loop: nothing can check it
   ambiguous,  ///< another pose, here or elsewhere, explains as much
   rejected,   ///< contradicts the loops
-  weak        ///< leaves a direction free, or agrees with too little to count
+  weak,       ///< leaves a direction free, or agrees with too little to count
+  in_place    ///< measured from where the others place both: how exactly they lie there, not where
 };
 const char* to_string(LinkState state);
 
@@ -111,6 +116,7 @@ struct GraphLoop {
 struct SolvedGraph {
   std::vector<SolvedNode> nodes;
   std::vector<SolvedLink> links;
+  std::vector<bool> in_place;  ///< of each pose measured in place: the two nodes lie so
   std::vector<GraphLoop> loops;
   std::vector<GraphQuestion> questions;
   int components = 0;  ///< of two nodes or more

@@ -176,6 +176,11 @@ class Solver {
       firm.push_back(edges.back());
       if (link.trust == LinkTrust::weak) firm.back().target = firm.back().source;
     }
+    solved_.in_place.clear();
+    for (const PoseEdge& measured : graph_.measured_in_place) {
+      solved_.in_place.push_back(lies_so(measured));
+      if (solved_.in_place.back()) edges.push_back(measured);
+    }
     std::vector<bool> fixed(best_.component.size(), true);
     std::vector<Rigid3> start(best_.component.size());
     for (int n = 0; n < graph_.nodes; ++n) {
@@ -189,6 +194,13 @@ class Solver {
     covariance_ = std::move(adjusted.covariance);
     edge_covariance_ = std::move(adjusted.edge_covariance);
     bridge_ = bridges_of(graph_.nodes, firm);
+  }
+
+  /// Whether the configuration lays two nodes where they were measured, or so near that it is no other place.
+  [[nodiscard]] bool lies_so(const PoseEdge& measured) const {
+    if (component(measured.source) != component(measured.target)) return false;
+    const Vector6d missed = misfit(measured.pose, inverse(at(measured.target)) * at(measured.source));
+    return missed.head<3>().norm() <= kOtherPlaceRad && missed.tail<3>().norm() <= kOtherPlaceM;
   }
 
   [[nodiscard]] bool is_held(std::size_t node) const {
@@ -368,6 +380,25 @@ class Solver {
                    : !is_held(n)               ? NodeState::under_constrained
                    : node.doubt > risk_        ? NodeState::probable
                                                : NodeState::registered;
+    }
+    judge_references();
+  }
+
+  /// What lends its component the frame lies in one with others as surely as the surest of them does.
+  void judge_references() {
+    const auto unsure = [](const SolvedNode& node) {
+      return std::tuple(node.state == NodeState::ambiguous, node.state, node.doubt);
+    };
+    for (const auto& [root, nodes] : members_of_references()) {
+      const SolvedNode* surest = nullptr;
+      for (const int n : nodes) {
+        const SolvedNode& node = solved_.nodes[static_cast<std::size_t>(n)];
+        if (n != root && (surest == nullptr || unsure(node) < unsure(*surest))) surest = &node;
+      }
+      if (surest == nullptr) continue;
+      SolvedNode& lender = solved_.nodes[static_cast<std::size_t>(root)];
+      lender.state = surest->state;
+      lender.doubt = surest->doubt;
     }
   }
 

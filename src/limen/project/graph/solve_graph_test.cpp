@@ -70,6 +70,67 @@ TEST(SolveGraph, FalseLinksAreFoundByTheirLoops) {
   EXPECT_GE(static_cast<double>(kept), 0.99 * static_cast<double>(all_true));
 }
 
+/// Of two scans neither lies more surely in one frame with the other than the other with it.
+TEST(SolveGraph, WhatLendsTheFrameIsNoSurerThanTheSurestOfTheOthers) {
+  for (const auto& [chance, state] :
+       {std::pair(1e-6, NodeState::registered), std::pair(0.02, NodeState::probable),
+        std::pair(0.3, NodeState::ambiguous)}) {
+    PoseGraph graph;
+    graph.nodes = 2;
+    GraphLink link;
+    link.source = 1;
+    link.target = 0;
+    link.chance = chance;
+    link.poses.emplace_back();
+    link.poses.front().probability = 1.0 - chance;
+    link.poses.front().covariance *= 1e-6;
+    graph.links.push_back(link);
+    const SolvedGraph solved = solve_graph(graph);
+    EXPECT_EQ(solved.nodes[0].state, state) << chance;
+    EXPECT_EQ(solved.nodes[1].state, state) << chance;
+    EXPECT_DOUBLE_EQ(solved.nodes[0].doubt, solved.nodes[1].doubt);
+  }
+}
+
+/// A fourth node by one link that leaves it loose along x.
+SyntheticGraph with_a_loose_node() {
+  SyntheticGraph made = synthetic_graph(3, 1, 2, 0.0, 5);
+  made.graph.nodes = 4;
+  GraphLink link;
+  link.source = 3;
+  link.target = 0;
+  link.chance = 1e-6;
+  LinkPose pose;
+  pose.target_from_source.translation = {3.0, 2.0, 0.0};
+  pose.centre = pose.target_from_source.translation;
+  pose.covariance = 1e-6 * Matrix6d::Identity();
+  pose.covariance(3, 3) = 0.1 * 0.1;
+  link.poses.push_back(pose);
+  made.graph.links.push_back(link);
+  return made;
+}
+
+TEST(SolveGraph, APoseMeasuredInPlaceHoldsALooseNodeAndSaysNothingOfItsPlace) {
+  SyntheticGraph made = with_a_loose_node();
+  const SolvedGraph before = solve_graph(made.graph);
+  EXPECT_EQ(before.nodes[3].state, NodeState::under_constrained);
+  LinkPose pose = made.graph.links.back().poses.front();
+  pose.target_from_source.translation.x() += 0.03;
+  pose.covariance = 1e-4 * Matrix6d::Identity();
+  made.graph.measured_in_place.push_back({3, 0, pose});
+  const SolvedGraph solved = solve_graph(made.graph);
+  EXPECT_EQ(solved.in_place, std::vector<bool>{true});
+  EXPECT_EQ(solved.nodes[3].state, NodeState::registered);
+  EXPECT_DOUBLE_EQ(solved.nodes[3].doubt, before.nodes[3].doubt);
+  const Rigid3 found = inverse(solved.nodes[0].frame_from_node) * solved.nodes[3].frame_from_node;
+  EXPECT_NEAR(found.translation.x(), 3.03, 0.002);
+  // It is of another place, or of nodes that nothing else joins.
+  made.graph.measured_in_place.front().pose.target_from_source.translation.x() += 5.0;
+  EXPECT_EQ(solve_graph(made.graph).nodes[3].state, NodeState::under_constrained);
+  made.graph.links.pop_back();
+  EXPECT_EQ(solve_graph(made.graph).nodes[3].state, NodeState::floating);
+}
+
 TEST(SolveGraph, ALinkInNoLoopIsABridge) {
   SyntheticGraph made = synthetic_graph(3, 1, 2, 0.0, 5);
   // A fourth node by one link.

@@ -181,7 +181,7 @@ std::string PairKey::target_name() const {
   constexpr std::size_t kDigits = 16;
   std::string name = target + (level ? "-level" : "");
   if (!start) return name;
-  std::string numbers;
+  std::string numbers = fmt::format("{} {} ", start->sigma_m, start->sigma_rad);
   for (const double number : to_matrix(start->target_from_source).reshaped())
     numbers += fmt::format("{} ", number);
   return name + "-start" + sha256_of(numbers).substr(0, kDigits);

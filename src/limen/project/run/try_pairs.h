@@ -34,14 +34,17 @@ enum class PairSearch {
 /// nobody said so.
 bool seem_level(const ProjectNode& source, const ProjectNode& target, const RegisterOptions& options);
 
+/// What is believed of pairs beforehand; source > target.
+using PairStarts = std::map<std::pair<std::size_t, std::size_t>, StartPrior>;
+
 /// Where and how pairs are registered.
 struct PairWork {
   const std::vector<ProjectNode>& nodes;
   const std::vector<ProjectScan>& scans;
   const Store& store;
   const RegisterOptions& options;
-  const std::map<std::pair<std::size_t, std::size_t>, StartPrior>& starts;  ///< of pairs that have one
-  JobEngine* engine;                                                        ///< null: here
+  const PairStarts& starts;  ///< of pairs that have one
+  JobEngine* engine;         ///< null: here
   const std::filesystem::path& folder;
 };
 

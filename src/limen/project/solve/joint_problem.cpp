@@ -104,8 +104,7 @@ JointProblem joint_problem(const std::vector<ProjectNode>& nodes, const std::vec
     if (made.pair_of[k] >= 0 && solved.links[k].pose == link.best) {
       const TriedPair& pair = pairs[static_cast<std::size_t>(made.pair_of[k])];
       for (const PlaneMatch& match : pair.result.matches) {
-        if (match.overlap_m2 >= kSharedM2 && !may_have_moved(match, pair, nodes))
-          shared.join(link, match, edge.pose.target_from_source);
+        if (match.overlap_m2 >= kSharedM2 && !may_have_moved(match, pair, nodes)) shared.join(edge, match);
       }
       for (const bool source : {true, false}) {
         int& node = source ? edge.source : edge.target;
@@ -115,6 +114,9 @@ JointProblem joint_problem(const std::vector<ProjectNode>& nodes, const std::vec
       }
     }
     problem.edges.push_back(edge);
+  }
+  for (std::size_t k = 0; k < made.graph.measured_in_place.size(); ++k) {
+    if (solved.in_place[k]) problem.edges.push_back(made.graph.measured_in_place[k]);
   }
   shared.tell(taken, problem);
   problem.points = points_along(survey.points, passes, problem);

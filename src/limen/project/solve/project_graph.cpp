@@ -25,6 +25,7 @@ constexpr double kRivalShare = 0.5;    // of the best pose's score: a pose with 
 constexpr std::size_t kMostPoses = 9;  // of a link
 constexpr double kMostChance = 0.5;    // probability of chance above which a pair makes no link
 constexpr double kHardly = 1e-4;       // a pose less probable than this is no possibility
+constexpr double kMostWrong = 0.05;    // probability that a pose measured in place is wrong
 constexpr double kOfUnknown = 0.1;     // probability of being wrong where a pair tells none
 constexpr double kStoreyM = 0.5;       // floors further apart are of different storeys
 constexpr double kWordWrong = 4e-4;    // probability that a user's word is wrong
@@ -88,9 +89,9 @@ class GraphMaker {
   ProjectGraph run() {
     graph_.nodes = static_cast<int>(nodes_.size());
     for (const ProjectNode& node : nodes_) graph_.scanners.push_back(node.digest.scanner());
-    for (std::size_t k = 0; k < pairs_.size(); ++k) add_pair(k);
+    for (std::size_t k = 0; k < pairs_.size(); ++k) pairs_[k].placed ? add_measured_in_place(k) : add_pair(k);
     add_given();
-    return {std::move(graph_), std::move(pair_of_)};
+    return {std::move(graph_), std::move(pair_of_), std::move(pair_in_place_)};
   }
 
  private:
@@ -114,16 +115,42 @@ class GraphMaker {
     link.look_alike = look_alike;
     link.chance = found.others ? by_chance(found) : kOfUnknown;
     link.poses.push_back(pose_of(link, found, found.best, 1.0));
+    add_alternatives(found, link);
+    if (words_.floors.count({pairs_[k].source, pairs_[k].target}) > 0) keep_floor(link);
+    if (spoken) heed(said->second, link);
+    graph_.links.push_back(std::move(link));
+    pair_of_.push_back(static_cast<int>(k));
+  }
+
+  void add_alternatives(const RegistrationResult& found, GraphLink& link) const {
     for (const Hypothesis& other : found.alternatives) {
       if (link.poses.size() >= kMostPoses) break;
       if (other.score < kRivalShare * found.best.score) continue;
       if (other.probability && *other.probability < kHardly) continue;
       add_alternative(pose_of(link, found, other, kLooser), link);
     }
-    if (words_.floors.count({pairs_[k].source, pairs_[k].target}) > 0) keep_floor(link);
-    if (spoken) heed(said->second, link);
-    graph_.links.push_back(std::move(link));
-    pair_of_.push_back(static_cast<int>(k));
+  }
+
+  /// What a pair says of how exactly its scans lie where the links place them, if it found them there. As far
+  /// as it may be wrong, they are known no better than before.
+  void add_measured_in_place(std::size_t k) {
+    const RegistrationResult& found = pairs_[k].result;
+    if (!makes_link(found, false)) return;
+    GraphLink link;
+    link.source = static_cast<int>(pairs_[k].source);
+    link.target = static_cast<int>(pairs_[k].target);
+    link.poses.push_back(pose_of(link, found, found.best, 1.0));
+    add_alternatives(found, link);
+    LinkPose& pose = link.poses.front();
+    const double wrong = 1.0 - pose.probability;
+    if (wrong > kMostWrong) return;
+    const LinkPose& placed = *pairs_[k].placed;
+    const Matrix6d around = moved_covariance(placed, Rigid3{}, pose.centre);
+    if (chi_square(misfit(pose, placed.target_from_source), pose.covariance + around) > kChiSquareBound)
+      return;
+    pose.covariance += wrong * around;
+    graph_.measured_in_place.push_back({link.source, link.target, pose});
+    pair_in_place_.push_back(static_cast<int>(k));
   }
 
   /// Poses nearer to each other than places repeat are one place, which is known no better than they agree:
@@ -270,6 +297,7 @@ class GraphMaker {
   const UserWords& words_;
   PoseGraph graph_;
   std::vector<int> pair_of_;
+  std::vector<int> pair_in_place_;
 };
 
 }  // namespace

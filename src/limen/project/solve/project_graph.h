@@ -15,7 +15,8 @@ namespace limen {
 /// Pairs as links of a graph, node by node.
 struct ProjectGraph {
   PoseGraph graph;
-  std::vector<int> pair_of;  ///< of each link: index of its pair, -1: the file gives it
+  std::vector<int> pair_of;        ///< of each link: index of its pair, -1: the file gives it
+  std::vector<int> pair_in_place;  ///< of each pose measured in place: index of its pair
 };
 
 /// Whether a pair proposes poses. Those that are more probably none are what any two scans show: many of them

@@ -100,6 +100,46 @@ TEST(ProjectGraph, AlongWhatAPairCallsOpenItsDeviationIsNotBelieved) {
   EXPECT_LT((Matrix3d(covariance.topLeftCorner<3, 3>()).norm()), 1e-3);
 }
 
+/// Of a pair that was measured from where the links place its scans.
+PoseGraph measured_in_place(const RegistrationResult& pair, double placed_sigma_m) {
+  std::vector<ProjectNode> nodes(2);
+  nodes[1].scan = 1;
+  LinkPose placed;
+  placed.covariance *= placed_sigma_m * placed_sigma_m;
+  return make_graph(nodes, {{1, 0, pair, {}, placed}}, {}).graph;
+}
+
+TEST(ProjectGraph, APoseMeasuredInPlaceIsNoLink) {
+  RegistrationResult pair = stated(Outcome::under_constrained, 0.0);
+  pair.best.sigma.covariance = 1e-6 * Matrix6d::Identity();
+  pair.sigma = pair.best.sigma;
+  const PoseGraph graph = measured_in_place(pair, 0.1);
+  EXPECT_TRUE(graph.links.empty());
+  ASSERT_EQ(graph.measured_in_place.size(), 1U);
+  EXPECT_LT(graph.measured_in_place.front().pose.covariance(3, 3), 1e-4);
+}
+
+TEST(ProjectGraph, APoseMeasuredInPlaceIsKnownNoBetterThanItMayBeWrong) {
+  RegistrationResult pair = stated(Outcome::under_constrained, 0.0);
+  pair.best.sigma.covariance = 1e-6 * Matrix6d::Identity();
+  pair.sigma = pair.best.sigma;
+  pair.best.probability = 0.96;
+  const PoseGraph graph = measured_in_place(pair, 0.1);
+  ASSERT_EQ(graph.measured_in_place.size(), 1U);
+  EXPECT_GE(graph.measured_in_place.front().pose.covariance(3, 3), 0.04 * 0.1 * 0.1);
+  pair.best.probability = 0.9;
+  EXPECT_TRUE(measured_in_place(pair, 0.1).measured_in_place.empty());
+}
+
+TEST(ProjectGraph, WhatIsFoundElsewhereIsNotMeasuredInPlace) {
+  RegistrationResult pair = stated(Outcome::registered, 0.0);
+  pair.best.sigma.covariance = 1e-6 * Matrix6d::Identity();
+  pair.sigma = pair.best.sigma;
+  pair.best.target_from_source.translation = {0.3, 0.0, 0.0};
+  EXPECT_EQ(measured_in_place(pair, 0.1).measured_in_place.size(), 1U);
+  EXPECT_TRUE(measured_in_place(pair, 0.03).measured_in_place.empty());
+}
+
 TEST(ProjectGraph, APairThatDoesNotKnowItselfIsNotSure) {
   RegistrationResult pair = stated(Outcome::registered, 0.0);
   pair.best.probability = 0.7;
@@ -246,12 +286,9 @@ TEST(SharedPlanes, WhatThePairItselfSeesInTwoPlanesIsNotOneSurface) {
     SharedPlanes shared(nodes, solved, none);
     Rigid3 pose;
     pose.translation = {2, 0, step_m};
-    GraphLink link;
-    link.source = 1;
-    link.target = 0;
     PlaneMatch match;
     match.source = match.target = 0;
-    shared.join(link, match, pose);
+    shared.join({1, 0, {pose}}, match);
     JointProblem problem;
     shared.tell({true, true}, problem);
     EXPECT_EQ(problem.planes, step_m < 0.01 ? 1 : 0) << step_m;
@@ -266,16 +303,13 @@ TEST(SharedPlanes, WhatOneScanAloneSawMayHaveBeenBuiltOtherwise) {
   SolvedGraph solved;
   solved.nodes.resize(2);
   solved.nodes[1].frame_from_node.translation = {2, 0, 0};
-  GraphLink link;
-  link.source = 1;
-  link.target = 0;
   PlaneMatch match;
   match.source = match.target = 0;
   const auto sigma_m = [&](double share) {
     const BentPasses none({});
     SharedPlanes shared(nodes, solved, none);
     match.overlap_m2 = share * area_m2;
-    shared.join(link, match, solved.nodes[1].frame_from_node);
+    shared.join({1, 0, {solved.nodes[1].frame_from_node}}, match);
     JointProblem problem;
     shared.tell({true, true}, problem);
     EXPECT_EQ(problem.observations.size(), 2U);

@@ -98,9 +98,9 @@ void SharedPlanes::for_each(const Visit& visit) {
   }
 }
 
-void SharedPlanes::join(const GraphLink& link, const PlaneMatch& match, const Rigid3& target_from_source) {
-  const auto source_node = static_cast<std::size_t>(link.source);
-  const auto target_node = static_cast<std::size_t>(link.target);
+void SharedPlanes::join(const PoseEdge& edge, const PlaneMatch& match) {
+  const auto source_node = static_cast<std::size_t>(edge.source);
+  const auto target_node = static_cast<std::size_t>(edge.target);
   const PlaneDigest& a = digest(source_node).planes[static_cast<std::size_t>(match.source)];
   const PlaneDigest& b = digest(target_node).planes[static_cast<std::size_t>(match.target)];
   const Rigid3& frame_from_a = solved_.nodes[source_node].frame_from_node;
@@ -112,11 +112,11 @@ void SharedPlanes::join(const GraphLink& link, const PlaneMatch& match, const Ri
   const double strays = std::hypot(nodes_[source_node].strays_m(), nodes_[target_node].strays_m());
   if (std::abs(in_frame.signed_distance(frame_from_b * b.centroid)) > kSharedM + kStrays * strays) return;
   const bool drawn = digest(source_node).model || digest(target_node).model;
-  if (!go_on(a, b, target_from_source, std::hypot(strays, drawn ? kDrawnM : 0.0))) return;
+  if (!go_on(a, b, edge.pose.target_from_source, std::hypot(strays, drawn ? kDrawnM : 0.0))) return;
   const std::size_t of_source = first_[source_node] + static_cast<std::size_t>(match.source);
   const std::size_t of_target = first_[target_node] + static_cast<std::size_t>(match.target);
   surfaces_.join(of_source, of_target);
-  if (viewpoints_.is_same(link.source, link.target)) return;
+  if (viewpoints_.is_same(edge.source, edge.target)) return;
   const double share = std::min(1.0, match.overlap_m2 / std::max(a.area_m2, b.area_m2));
   for (const std::size_t plane : {of_source, of_target}) {
     common_[plane].first += share;

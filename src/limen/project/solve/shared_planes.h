@@ -25,7 +25,7 @@ class SharedPlanes {
 
   /// Joins two planes where they lie in one under the solved poses and under the pair's own. Both scans saw
   /// `match.overlap_m2` of them: what one saw beyond may be another wall, built some millimetres off.
-  void join(const GraphLink& link, const PlaneMatch& match, const Rigid3& target_from_source);
+  void join(const PoseEdge& edge, const PlaneMatch& match);
 
   /// Adds the observations of the planes that two nodes or more see, or a bent pass at two times: of a bent
   /// pass strip by strip, and of what it sees patch by patch, for long walls bend.

@@ -8,6 +8,7 @@
 
 #include "limen/model/result.h"
 #include "limen/project/control/control_file.h"
+#include "limen/project/graph/link_pose.h"
 #include "limen/project/store/scan_digest.h"
 
 namespace limen {
@@ -39,6 +40,8 @@ struct TriedPair {
   std::size_t target = 0;
   RegistrationResult result;
   std::string fault = {};  ///< why there is no result, where a worker could not make it; empty: there is one
+  /// Where the links place the two, of a pair that was measured once more from there.
+  std::optional<LinkPose> placed = {};
 };
 
 }  // namespace limen

@@ -198,7 +198,7 @@ std::string links_table(const ProjectResult& result) {
       "largest residual first. "
       "verified: checked by a loop; bridge: single unchecked link; ambiguous: another pose fits as "
       "well; rejected: contradicted, or probably two look-alike places; weak: too little overlap, "
-      "or a direction undetermined.");
+      "or a direction undetermined; in_place: measured from where the other links place both scans.");
 }
 
 std::string loops_table(const ProjectResult& result) {

@@ -69,7 +69,7 @@ Json link_schema() {
   return object(
       {{"source", whole("of scans, from 0")},
        {"target", whole("of scans, from 0")},
-       {"state", words({"verified", "bridge", "ambiguous", "rejected", "weak"})},
+       {"state", words({"verified", "bridge", "ambiguous", "rejected", "weak", "in_place"})},
        {"pair", words({"given", "registered", "probable", "ambiguous", "under_constrained", "no_match"})},
        {"pose", ref("pose")},
        {"pose_number", whole("among the poses of the pair, 0 the best")},

@@ -114,6 +114,7 @@ std::vector<std::size_t> worst_links_first(const ProjectResult& result) {
       case LinkState::verified:
         return 2 * kStep + link.loop_error_m;
       case LinkState::weak:
+      case LinkState::in_place:
         return kStep + link.loop_error_m;
       case LinkState::rejected:
         break;

@@ -37,7 +37,7 @@ const makePair = (scene, number) => {
 
 const kLinkWords = {
   verified: t`checked by at least one loop that closes`, bridge: t`single unchecked link: accepted, but in no loop`, ambiguous: t`another pose fits as well, of this link or elsewhere`,
-  rejected: t`contradicts the loops, or probably matches two look-alike places`, weak: t`leaves a direction undetermined, or overlaps too little to count`,
+  rejected: t`contradicts the loops, or probably matches two look-alike places`, weak: t`leaves a direction undetermined, or overlaps too little to count`, in_place: t`measured from where the other links place both scans`,
 };
 
 const describePair = ({ link, source, target }) => {
