@@ -106,10 +106,8 @@ bool is_held(const RegistrationResult& result, const Rigid3& truth) {
 }
 
 RegisterOptions register_options(const Options& options) {
-  static const std::map<std::string, Method> methods = {
-      {"auto", Method::automatic}, {"polygons", Method::polygons}, {"segments", Method::segments}};
   RegisterOptions registering;
-  registering.method = methods.at(options.method);
+  registering.method = value_called(kMethods, options.method).value();
   return registering;
 }
 

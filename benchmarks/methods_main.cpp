@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,7 @@ using namespace limen::methods;  // NOLINT(google-build-using-namespace)
 const std::vector<std::string> kKinds = {"museum", "townhouse", "villa"};
 
 Method method_of(const std::string& name) {
-  for (const Method method :
-       {Method::automatic, Method::polygons, Method::openings, Method::hybrid, Method::segments})
-    if (name == to_string(method)) return method;
+  if (const std::optional<Method> method = value_called(kMethods, name)) return *method;
   throw Error("no method is called '" + name + "'", "bench_methods",
               "choose of auto, polygons, openings, hybrid, segments");
 }

@@ -98,10 +98,10 @@ void run_one(const Case& at, const std::string& name, const RegisterOptions& opt
 
 /// Every published method, then `auto`, each from the points on.
 void run_all(const Case& at) {
-  for (const PublishedMethod method : kPublishedMethods) {
+  for (const auto& [method, name] : kPublishedMethods) {
     RegisterOptions options;
     options.as_published = method;
-    run_one(at, to_string(method), options);
+    run_one(at, name, options);
   }
   run_one(at, "auto", {});
 }

@@ -186,9 +186,7 @@ ScanTopology station_lines(const Scan& scan) {
 DetectOptions detect_options(const Settings& settings) {
   DetectOptions options;
   options.relief = !settings.no_relief;
-  if (settings.detector == "grow") options.detector = PlaneDetector::grow;
-  if (settings.detector == "scan_lines") options.detector = PlaneDetector::scan_lines;
-  if (settings.detector == "msac") options.detector = PlaneDetector::msac;
+  options.detector = value_called(kPlaneDetectors, settings.detector).value_or(PlaneDetector::automatic);
   if (settings.threshold == "noise") options.threshold = ThresholdRule::noise;
   if (settings.threshold == "a_contrario") options.threshold = ThresholdRule::a_contrario;
   return options;

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 // The options of C++ with the defaults of C++.
-#include <array>
+#include <cstddef>
+#include <optional>
 #include <string>
-#include <utility>
 
 #include "module.h"
 #include "numpy_views.h"
 #include <fmt/format.h>
 
+#include "limen/base/named.h"
 #include "limen/deviation/deviation.h"
 #include "limen/extract/features/extract_features.h"
 #include "limen/extract/openings/openings.h"
@@ -19,39 +20,10 @@ namespace limen::python {
 namespace {
 
 template <typename Enum, std::size_t Size>
-using Names = std::array<std::pair<const char*, Enum>, Size>;
-
-constexpr Names<Method, 5> kMethods = {{{"auto", Method::automatic},
-                                        {"polygons", Method::polygons},
-                                        {"openings", Method::openings},
-                                        {"hybrid", Method::hybrid},
-                                        {"segments", Method::segments}}};
-constexpr Names<Gravity, 3> kGravities = {
-    {{"auto", Gravity::automatic}, {"up", Gravity::up}, {"unknown", Gravity::unknown}}};
-constexpr Names<PlaneDetector, 4> kDetectors = {{{"auto", PlaneDetector::automatic},
-                                                 {"grow", PlaneDetector::grow},
-                                                 {"scan_lines", PlaneDetector::scan_lines},
-                                                 {"msac", PlaneDetector::msac}}};
-constexpr Names<ThresholdRule, 3> kRules = {{{"auto", ThresholdRule::automatic},
-                                             {"noise", ThresholdRule::noise},
-                                             {"a_contrario", ThresholdRule::a_contrario}}};
-
-template <typename Enum, std::size_t Size>
-Enum named(const Names<Enum, Size>& names, const std::string& wanted, const char* option) {
-  std::string known;
-  for (const auto& [name, value] : names) {
-    if (wanted == name) return value;
-    known += fmt::format("{}{}", known.empty() ? "" : ", ", name);
-  }
-  throw Error(fmt::format("{} is \"{}\"", option, wanted), "", "give one of: " + known);
-}
-
-template <typename Enum, std::size_t Size>
-std::string name_of(const Names<Enum, Size>& names, Enum wanted) {
-  for (const auto& [name, value] : names) {
-    if (value == wanted) return name;
-  }
-  return "";
+Enum named(const Named<Enum> (&names)[Size], const std::string& wanted, const char* option) {
+  if (const std::optional<Enum> value = value_called(names, wanted)) return *value;
+  throw Error(fmt::format("{} is \"{}\"", option, wanted), "",
+              fmt::format("give one of: {}", fmt::join(names_in(names), ", ")));
 }
 
 /// Binds an aggregate of options: made of keywords, all others as C++ has them.
@@ -95,10 +67,11 @@ class Binder {
   }
 
   template <typename Enum, std::size_t Size>
-  Binder& choice(const char* name, Enum Options::*member, const Names<Enum, Size>& names, const char* doc) {
+  Binder& choice(const char* name, Enum Options::*member, const Named<Enum> (&names)[Size],
+                 const char* doc) {
     class_.def_property(
-        name, [member, names](const Options& options) { return name_of(names, options.*member); },
-        [member, names, name](Options& options, const py::object& wanted) {
+        name, [member, &names](const Options& options) { return name_of(names, options.*member); },
+        [member, &names, name](Options& options, const py::object& wanted) {
           options.*member = named(names, py::str(wanted).template cast<std::string>(), name);
         },
         doc);
@@ -118,8 +91,8 @@ class Binder {
 
 void bind_extraction(py::module_& module) {
   Binder<DetectOptions>(module, "DetectOptions", "How planes are found.")
-      .choice("detector", &DetectOptions::detector, kDetectors, "auto, grow, scan_lines or msac")
-      .choice("threshold", &DetectOptions::threshold, kRules, "auto, noise or a_contrario")
+      .choice("detector", &DetectOptions::detector, kPlaneDetectors, "auto, grow, scan_lines or msac")
+      .choice("threshold", &DetectOptions::threshold, kThresholdRules, "auto, noise or a_contrario")
       .field("seed", &DetectOptions::seed, "of the detectors that draw samples")
       .field("relief", &DetectOptions::relief,
              "of mobile scans: the relief of façades apart, where no openings are sought");

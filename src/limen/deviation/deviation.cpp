@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "limen/base/error.h"
+#include "limen/base/named.h"
 #include "limen/base/parallel.h"
 #include "limen/base/ranked.h"
 #include "limen/deviation/face_offsets.h"
@@ -113,15 +114,9 @@ void DeviationOptions::check() const {
 }
 
 const char* to_string(Presence presence) {
-  switch (presence) {
-    case Presence::found:
-      return "found";
-    case Presence::not_found:
-      return "not_found";
-    case Presence::not_judged:
-      return "not_judged";
-  }
-  return "not_judged";
+  static constexpr Named<Presence> names[] = {
+      {Presence::found, "found"}, {Presence::not_found, "not_found"}, {Presence::not_judged, "not_judged"}};
+  return name_of(names, presence);
 }
 
 int loa_class(double deviation_m) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "limen/base/named.h"
+
 namespace limen {
 
 /// What poses are proposed from.
@@ -12,7 +14,14 @@ enum class Method {
   hybrid,     ///< openings, and planes for the shift across the wall (2023, III)
   segments    ///< line segments (2023, IV)
 };
-const char* to_string(Method method);
+inline constexpr Named<Method> kMethods[] = {{Method::automatic, "auto"},
+                                             {Method::polygons, "polygons"},
+                                             {Method::openings, "openings"},
+                                             {Method::hybrid, "hybrid"},
+                                             {Method::segments, "segments"}};
+inline const char* to_string(Method method) {
+  return name_of(kMethods, method);
+}
 
 /// The papers' own methods, run as they are published.
 enum class PublishedMethod {
@@ -22,11 +31,15 @@ enum class PublishedMethod {
   hybrid_2023,     ///< corners of openings and planes across their wall (2023, III)
   segments_2023    ///< line segments (2023, IV)
 };
-inline constexpr PublishedMethod kPublishedMethods[] = {
-    PublishedMethod::threshold_2021, PublishedMethod::cluster_2021, PublishedMethod::openings_2022,
-    PublishedMethod::hybrid_2023, PublishedMethod::segments_2023};
-/// "2021-threshold", "2021-cluster", "2022", "2023-hybrid", "2023-segments".
-const char* to_string(PublishedMethod method);
+inline constexpr Named<PublishedMethod> kPublishedMethods[] = {
+    {PublishedMethod::threshold_2021, "2021-threshold"},
+    {PublishedMethod::cluster_2021, "2021-cluster"},
+    {PublishedMethod::openings_2022, "2022"},
+    {PublishedMethod::hybrid_2023, "2023-hybrid"},
+    {PublishedMethod::segments_2023, "2023-segments"}};
+inline const char* to_string(PublishedMethod method) {
+  return name_of(kPublishedMethods, method);
+}
 
 /// What is known of the vertical.
 enum class Gravity {
@@ -34,5 +47,7 @@ enum class Gravity {
   up,         ///< both z axes point up
   unknown     ///< any orientation: only what each scan shows by itself counts
 };
+inline constexpr Named<Gravity> kGravities[] = {
+    {Gravity::automatic, "auto"}, {Gravity::up, "up"}, {Gravity::unknown, "unknown"}};
 
 }  // namespace limen

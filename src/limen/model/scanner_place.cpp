@@ -4,24 +4,16 @@
 
 #include <fmt/format.h>
 
+#include "limen/base/named.h"
+
 namespace limen {
 
 const char* to_string(PlaceSource source) {
-  switch (source) {
-    case PlaceSource::unknown:
-      return "unknown";
-    case PlaceSource::assumed:
-      return "assumed";
-    case PlaceSource::stated_by_file:
-      return "file";
-    case PlaceSource::stated_by_user:
-      return "user";
-    case PlaceSource::estimated:
-      return "estimated";
-    case PlaceSource::per_point:
-      return "per point";
-  }
-  return "";
+  static constexpr Named<PlaceSource> names[] = {
+      {PlaceSource::unknown, "unknown"},     {PlaceSource::assumed, "assumed"},
+      {PlaceSource::stated_by_file, "file"}, {PlaceSource::stated_by_user, "user"},
+      {PlaceSource::estimated, "estimated"}, {PlaceSource::per_point, "per point"}};
+  return name_of(names, source);
 }
 
 std::string words_of_refuted(const ScannerPlace& place) {

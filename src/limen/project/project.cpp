@@ -9,6 +9,7 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/base/named.h"
 #include "limen/base/progress.h"
 #include "limen/io/cloud/point_print.h"
 #include "limen/io/trajectory/read_trajectory.h"
@@ -450,15 +451,10 @@ void ProjectOptions::check() const {
 }
 
 const char* to_string(ProjectOutcome outcome) {
-  switch (outcome) {
-    case ProjectOutcome::registered:
-      return "registered";
-    case ProjectOutcome::partial:
-      return "partial";
-    case ProjectOutcome::no_match:
-      break;
-  }
-  return "no_match";
+  static constexpr Named<ProjectOutcome> names[] = {{ProjectOutcome::registered, "registered"},
+                                                    {ProjectOutcome::partial, "partial"},
+                                                    {ProjectOutcome::no_match, "no_match"}};
+  return name_of(names, outcome);
 }
 
 ProjectResult run_project(const ProjectInputs& inputs, const std::filesystem::path& folder,

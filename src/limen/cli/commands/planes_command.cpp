@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +13,7 @@
 
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
+#include "limen/base/named.h"
 #include "limen/bim/read_bim.h"
 #include "limen/cli/commands/commands.h"
 #include "limen/cli/inputs/scan_options.h"
@@ -29,22 +30,10 @@ struct PlanesOptions : FeatureChoice {
   ExtractOptions extract;
 };
 
-const std::map<std::string, PlaneDetector>& detectors() {
-  static const std::map<std::string, PlaneDetector> names = {{"auto", PlaneDetector::automatic},
-                                                             {"grow", PlaneDetector::grow},
-                                                             {"scan_lines", PlaneDetector::scan_lines},
-                                                             {"msac", PlaneDetector::msac}};
-  return names;
-}
-
 /// A rule by its name, else a length in metres.
 void set_threshold(const std::string& text, ExtractOptions& extract) {
-  static const std::map<std::string, ThresholdRule> rules = {{"auto", ThresholdRule::automatic},
-                                                             {"noise", ThresholdRule::noise},
-                                                             {"a_contrario", ThresholdRule::a_contrario}};
-  const auto rule = rules.find(text);
-  if (rule != rules.end()) {
-    extract.detect.threshold = rule->second;
+  if (const std::optional<ThresholdRule> rule = value_called(kThresholdRules, text)) {
+    extract.detect.threshold = *rule;
     return;
   }
   double& metres = extract.grow.inlier_threshold_m;
@@ -83,7 +72,7 @@ int run_model(const PlanesOptions& options, const Session& session) {
 }
 
 int run(PlanesOptions options, const Session& session) {
-  options.extract.detect.detector = detectors().at(options.detector);
+  options.extract.detect.detector = value_called(kPlaneDetectors, options.detector).value();
   options.extract.detect.seed = session.common.seed;
   set_threshold(options.threshold, options.extract);
   if (options.min_inliers != 0) {
@@ -114,13 +103,11 @@ void add_planes_command(CommandLine& app, Session& session) {
       add_command(app, session, "planes", "Find the planes of a scan or a model and their outlines",
                   [options, &session] { return run(*options, session); });
   add_feature_options(*command, *options);
-  std::vector<std::string> names;
-  for (const auto& [name, detector] : detectors()) names.push_back(name);
   command
       ->add_option("--detector", options->detector,
                    "How planes are found (default auto, which is grow); scan_lines needs a scan whose lines "
                    "are known; msac is slow")
-      ->one_of(names);
+      ->one_of({"auto", "grow", "msac", "scan_lines"});
   command->add_option("--threshold-m,--inlier-threshold-m METRES|RULE", options->threshold,
                       "Largest distance of a point from its plane: metres, or a rule: auto (default), noise, "
                       "a_contrario; 0 is auto");

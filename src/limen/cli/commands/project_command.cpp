@@ -76,9 +76,7 @@ struct ProjectCommandOptions {
 
 ProjectOptions project_options(const ProjectCommandOptions& options, const Session& session) {
   ProjectOptions project;
-  project.registering.gravity = options.gravity == "up"        ? Gravity::up
-                                : options.gravity == "unknown" ? Gravity::unknown
-                                                               : Gravity::automatic;
+  project.registering.gravity = gravity_of(options.gravity);
   project.registering.seed = session.common.seed;
   ReadingChoice reading;
   reading.memory = options.memory;

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -62,27 +61,6 @@ struct StatedSide {
   InputSummary summary;
   SceneSide scene;
 };
-
-Method method_of(const std::string& name) {
-  static const std::map<std::string, Method> methods = {{"auto", Method::automatic},
-                                                        {"polygons", Method::polygons},
-                                                        {"openings", Method::openings},
-                                                        {"hybrid", Method::hybrid},
-                                                        {"segments", Method::segments}};
-  return methods.at(name);
-}
-
-std::optional<PublishedMethod> published_of(const std::string& name) {
-  for (const PublishedMethod method : kPublishedMethods)
-    if (name == to_string(method)) return method;
-  return std::nullopt;
-}
-
-std::vector<std::string> published_names() {
-  std::vector<std::string> names;
-  for (const PublishedMethod method : kPublishedMethods) names.emplace_back(to_string(method));
-  return names;
-}
 
 /// The options of one side: what is said of it alone counts before what is said of both.
 ReadOptions side_options(const RegisterCommandOptions& options, const std::string& own,
@@ -153,8 +131,8 @@ Registered register_files(const RegisterCommandOptions& options, const Session& 
                [&] { return unit_of_input(options.target, target_options.metres_per_unit); });
   RegisterOptions registering;
   registering.gravity = gravity_of(options.gravity);
-  registering.method = method_of(options.method);
-  registering.as_published = published_of(options.as_published);
+  registering.method = value_called(kMethods, options.method).value();
+  registering.as_published = value_called(kPublishedMethods, options.as_published);
   registering.wall_thickness_m = options.wall_thickness_m;
   registering.verdict = verdict;
   registering.start = believed;
@@ -313,12 +291,12 @@ void add_register_command(CommandLine& app, Session& session) {
   command
       ->add_option("--method", options->method,
                    "What to match: auto (default), polygons, openings, hybrid (both), or segments")
-      ->one_of({"auto", "polygons", "openings", "hybrid", "segments"});
+      ->one_of(names_in(kMethods));
   command
       ->add_option("--as-published", options->as_published,
                    "Use the method of a published paper instead, for comparison: one pose and no verdict, "
                    "exit status 3")
-      ->one_of(published_names());
+      ->one_of(names_in(kPublishedMethods));
   add_length_option(
       *command, "--wall-thickness-m,--wall-thickness", options->wall_thickness_m,
       "Thickness of the outer walls, if it is known; else it is measured, or reported as not determined");

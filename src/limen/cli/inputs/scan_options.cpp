@@ -273,8 +273,7 @@ BimModel read_model_input(const std::string& path, const Session& session,
 }
 
 Gravity gravity_of(const std::string& name) {
-  if (name == "up") return Gravity::up;
-  return name == "unknown" ? Gravity::unknown : Gravity::automatic;
+  return value_called(kGravities, name).value_or(Gravity::automatic);
 }
 
 void note_place(InputSummary& summary, const ScannerPlace& place, const Session& session) {

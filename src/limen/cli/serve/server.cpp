@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "limen/base/error.h"
+#include "limen/base/named.h"
 #include "limen/base/text.h"
 
 namespace limen {
@@ -29,38 +30,23 @@ constexpr std::size_t kServePiece = std::size_t{256} * 1024;
 constexpr std::string_view kHeadEnd = "\r\n\r\n";
 
 const char* words_of(int status) {
-  switch (status) {
-    case 200:
-      return "OK";
-    case 201:
-      return "Created";
-    case 202:
-      return "Accepted";
-    case 403:
-      return "Forbidden";
-    case 404:
-      return "Not Found";
-    case 405:
-      return "Method Not Allowed";
-    case 409:
-      return "Conflict";
-    case 411:
-      return "Length Required";
-    case 413:
-      return "Content Too Large";
-    case 414:
-      return "URI Too Long";
-    case 415:
-      return "Unsupported Media Type";
-    case 431:
-      return "Request Header Fields Too Large";
-    case 501:
-      return "Not Implemented";
-    case 507:
-      return "Insufficient Storage";
-    default:
-      return status < 500 ? "Bad Request" : "Server Error";
-  }
+  static constexpr Named<int> words[] = {{200, "OK"},
+                                         {201, "Created"},
+                                         {202, "Accepted"},
+                                         {403, "Forbidden"},
+                                         {404, "Not Found"},
+                                         {405, "Method Not Allowed"},
+                                         {409, "Conflict"},
+                                         {411, "Length Required"},
+                                         {413, "Content Too Large"},
+                                         {414, "URI Too Long"},
+                                         {415, "Unsupported Media Type"},
+                                         {431, "Request Header Fields Too Large"},
+                                         {501, "Not Implemented"},
+                                         {507, "Insufficient Storage"}};
+  const char* const known = name_of(words, status);
+  if (*known != '\0') return known;
+  return status < 500 ? "Bad Request" : "Server Error";
 }
 
 std::string head_of(const HttpReply& reply, std::uint64_t bytes) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "limen/base/named.h"
 #include "limen/base/progress.h"
 #include "limen/extract/planes/grow_planes.h"
 #include "limen/extract/planes/plane_labels.h"
@@ -18,6 +19,11 @@ enum class PlaneDetector {
   msac,        ///< 2021, section 2.2: the published baseline, slow (msac_planes.h)
   published    ///< 2021, section 2: scan_lines where the scan's lines are known, else msac
 };
+/// Those that are for users.
+inline constexpr Named<PlaneDetector> kPlaneDetectors[] = {{PlaneDetector::automatic, "auto"},
+                                                           {PlaneDetector::grow, "grow"},
+                                                           {PlaneDetector::scan_lines, "scan_lines"},
+                                                           {PlaneDetector::msac, "msac"}};
 
 /// Where the inlier threshold comes from when GrowOptions::inlier_threshold_m is 0.
 enum class ThresholdRule {
@@ -27,6 +33,10 @@ enum class ThresholdRule {
   a_contrario,  ///< 2021, 3.1.1: among 5, 10, 15, 20, 30 and 50 mm, whatever the noise
   published     ///< the same by equations 3 to 6 as they are printed (automatic_threshold.h)
 };
+/// Those that are for users.
+inline constexpr Named<ThresholdRule> kThresholdRules[] = {{ThresholdRule::automatic, "auto"},
+                                                           {ThresholdRule::noise, "noise"},
+                                                           {ThresholdRule::a_contrario, "a_contrario"}};
 
 struct DetectOptions {
   PlaneDetector detector = PlaneDetector::automatic;

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limen/base/error.h"
+#include "limen/base/named.h"
 #include "limen/base/text.h"
 #include "limen/files/bounded_json.h"
 #include "limen/files/mapped_file.h"
@@ -22,19 +23,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr DecisionKind kKinds[] = {DecisionKind::accept, DecisionKind::reject,     DecisionKind::choose,
-                                   DecisionKind::level,  DecisionKind::same_floor, DecisionKind::start,
-                                   DecisionKind::forget};
+constexpr Named<DecisionKind> kKinds[] = {
+    {DecisionKind::accept, "accept"},         {DecisionKind::reject, "reject"},
+    {DecisionKind::choose, "choose"},         {DecisionKind::level, "level"},
+    {DecisionKind::same_floor, "same-floor"}, {DecisionKind::start, "start"},
+    {DecisionKind::forget, "forget"}};
 constexpr int kLastPose = 1000;  // no pair has so many
 constexpr const char* kDecisionsRemedy =
     "write accept A B, reject A B, choose A B N, level A, same-floor A B, start A B POINTS or forget A B";
-
-std::optional<DecisionKind> kind_called(const std::string& name) {
-  for (const DecisionKind kind : kKinds) {
-    if (name == to_string(kind)) return kind;
-  }
-  return {};
-}
 
 bool counts_fit(const Decision& decision) {
   const std::size_t scans = decision.scans.size();
@@ -61,7 +57,7 @@ bool replaces(const Decision& later, const Decision& earlier) {
 
 Decision from_json(const Json& json, const std::string& where) {
   for (const auto& [name, value] : json.items()) {
-    const std::optional<DecisionKind> kind = kind_called(name);
+    const std::optional<DecisionKind> kind = value_called(kKinds, name);
     if (!kind) continue;
     const auto pose = json.value("pose", std::int64_t{0});
     Decision decision{*kind, value.get<std::vector<std::string>>(),
@@ -84,23 +80,7 @@ Decision from_json(const Json& json, const std::string& where) {
 }  // namespace
 
 const char* to_string(DecisionKind kind) {
-  switch (kind) {
-    case DecisionKind::accept:
-      return "accept";
-    case DecisionKind::reject:
-      return "reject";
-    case DecisionKind::choose:
-      return "choose";
-    case DecisionKind::level:
-      return "level";
-    case DecisionKind::same_floor:
-      return "same-floor";
-    case DecisionKind::start:
-      return "start";
-    case DecisionKind::forget:
-      break;
-  }
-  return "forget";
+  return name_of(kKinds, kind);
 }
 
 std::string words_of(const Decision& decision) {
@@ -116,7 +96,7 @@ std::string decide_line(const std::string& folder, const Decision& decision) {
 }
 
 Decision decision_from(const std::vector<std::string>& words) {
-  const std::optional<DecisionKind> kind = words.empty() ? std::nullopt : kind_called(words.front());
+  const std::optional<DecisionKind> kind = words.empty() ? std::nullopt : value_called(kKinds, words.front());
   if (!kind) throw Error("no decision is given", "project decide", kDecisionsRemedy);
   Decision decision{*kind, {words.begin() + 1, words.end()}, 0};
   if (*kind == DecisionKind::choose && !decision.scans.empty()) {

@@ -2,40 +2,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "limen/project/graph/pose_graph.h"
 
+#include "limen/base/named.h"
+
 namespace limen {
 
 const char* to_string(LinkState state) {
-  switch (state) {
-    case LinkState::verified:
-      return "verified";
-    case LinkState::bridge:
-      return "bridge";
-    case LinkState::ambiguous:
-      return "ambiguous";
-    case LinkState::rejected:
-      return "rejected";
-    case LinkState::in_place:
-      return "in_place";
-    case LinkState::weak:
-      break;
-  }
-  return "weak";
+  static constexpr Named<LinkState> names[] = {{LinkState::verified, "verified"},
+                                               {LinkState::bridge, "bridge"},
+                                               {LinkState::ambiguous, "ambiguous"},
+                                               {LinkState::rejected, "rejected"},
+                                               {LinkState::weak, "weak"},
+                                               {LinkState::in_place, "in_place"}};
+  return name_of(names, state);
 }
 
 const char* to_string(NodeState state) {
-  switch (state) {
-    case NodeState::registered:
-      return "registered";
-    case NodeState::probable:
-      return "probable";
-    case NodeState::ambiguous:
-      return "ambiguous";
-    case NodeState::under_constrained:
-      return "under_constrained";
-    case NodeState::floating:
-      break;
-  }
-  return "floating";
+  static constexpr Named<NodeState> names[] = {{NodeState::registered, "registered"},
+                                               {NodeState::probable, "probable"},
+                                               {NodeState::ambiguous, "ambiguous"},
+                                               {NodeState::under_constrained, "under_constrained"},
+                                               {NodeState::floating, "floating"}};
+  return name_of(names, state);
 }
 
 }  // namespace limen

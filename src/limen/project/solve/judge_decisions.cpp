@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/angles.h"
+#include "limen/base/named.h"
 #include "limen/project/solve/project_graph.h"
 #include "limen/project/solve/word_terms.h"
 #include "limen/register/judge/start_prior.h"
@@ -137,15 +138,10 @@ class DecisionJudge {
 }  // namespace
 
 const char* to_string(DecisionState state) {
-  switch (state) {
-    case DecisionState::kept:
-      return "kept";
-    case DecisionState::contradicted:
-      return "contradicted";
-    case DecisionState::unused:
-      break;
-  }
-  return "unused";
+  static constexpr Named<DecisionState> names[] = {{DecisionState::kept, "kept"},
+                                                   {DecisionState::contradicted, "contradicted"},
+                                                   {DecisionState::unused, "unused"}};
+  return name_of(names, state);
 }
 
 std::vector<ProjectDecision> judged_decisions(const WordsAndSolution& all) {

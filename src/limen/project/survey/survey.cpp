@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/named.h"
 #include "limen/geometry/spline_motion.h"
 #include "limen/project/control/control_file.h"
 #include "limen/project/state/scan_names.h"
@@ -173,29 +174,17 @@ class SurveyReader {
 }  // namespace
 
 const char* to_string(PointState state) {
-  switch (state) {
-    case PointState::used:
-      return "used";
-    case PointState::left_out:
-      return "left_out";
-    case PointState::compared:
-      return "compared";
-    case PointState::not_placed:
-      break;
-  }
-  return "not_placed";
+  static constexpr Named<PointState> names[] = {{PointState::used, "used"},
+                                                {PointState::left_out, "left_out"},
+                                                {PointState::compared, "compared"},
+                                                {PointState::not_placed, "not_placed"}};
+  return name_of(names, state);
 }
 
 const char* to_string(PointRole role) {
-  switch (role) {
-    case PointRole::control:
-      return "control";
-    case PointRole::check:
-      return "check";
-    case PointRole::tie:
-      break;
-  }
-  return "tie";
+  static constexpr Named<PointRole> names[] = {
+      {PointRole::control, "control"}, {PointRole::check, "check"}, {PointRole::tie, "tie"}};
+  return name_of(names, role);
 }
 
 Survey read_survey(const ProjectInputs& inputs, const std::vector<ProjectNode>& nodes,

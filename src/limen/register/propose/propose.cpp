@@ -163,22 +163,6 @@ std::vector<PoseCandidate> model_candidates(const Features& source, const Featur
 
 }  // namespace
 
-const char* to_string(Method method) {
-  switch (method) {
-    case Method::automatic:
-      return "auto";
-    case Method::polygons:
-      return "polygons";
-    case Method::openings:
-      return "openings";
-    case Method::hybrid:
-      return "hybrid";
-    case Method::segments:
-      return "segments";
-  }
-  return "auto";
-}
-
 std::vector<PoseCandidate> propose_poses(const Features& source, const Features& target,
                                          const ProposalOptions& options) {
   std::vector<PoseCandidate> all;

@@ -184,7 +184,7 @@ TEST(Published, TheSameForAnyNumberOfThreadsAndAnotherForAnotherSeed) {
 }
 
 TEST(Published, MethodsForScansRefuseAModel) {
-  for (const PublishedMethod method : kPublishedMethods) {
+  for (const auto& [method, name] : kPublishedMethods) {
     if (method == PublishedMethod::segments_2023) {
       EXPECT_NO_THROW(check_sides(method, true));
     } else {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "limen/base/named.h"
+
 namespace limen {
 namespace {
 
@@ -224,17 +226,11 @@ constexpr int kArcPieces = 16;  // even, so that the highest point of an arch is
 }  // namespace
 
 const char* to_string(HeadForm head) {
-  switch (head) {
-    case HeadForm::segmental:
-      return "segmental";
-    case HeadForm::semicircle:
-      return "semicircle";
-    case HeadForm::round:
-      return "round";
-    case HeadForm::rectangular:
-      break;
-  }
-  return "rectangular";
+  static constexpr Named<HeadForm> names[] = {{HeadForm::segmental, "segmental"},
+                                              {HeadForm::semicircle, "semicircle"},
+                                              {HeadForm::round, "round"},
+                                              {HeadForm::rectangular, "rectangular"}};
+  return name_of(names, head);
 }
 
 Ring OpeningShape::outline() const {
