@@ -48,6 +48,23 @@ std::string shell_word(const std::string& text);
 /// Words that `shell_word` made, with blanks between them.
 std::vector<std::string> shell_words(const std::string& line);
 
+/// "a, b, c and 4 more": what `words_of` says of the first `most` items of a list.
+template <typename List, typename WordsOf>
+std::string listed(const List& items, std::size_t most, const WordsOf& words_of) {
+  std::string text;
+  for (std::size_t k = 0; k < items.size() && k < most; ++k)
+    text.append(k == 0 ? "" : ", ").append(words_of(items[k]));
+  return items.size() > most ? text + " and " + std::to_string(items.size() - most) + " more" : text;
+}
+
+/// The lines that `line_of` makes of the first `most` items of a list, and how many items follow.
+template <typename List, typename LineOf>
+std::string first_lines(const List& items, std::size_t most, const LineOf& line_of) {
+  std::string text;
+  for (std::size_t k = 0; k < items.size() && k < most; ++k) text += line_of(items[k]);
+  return items.size() > most ? text + "... " + std::to_string(items.size() - most) + " more\n" : text;
+}
+
 /// What the system says of an error number (errno), in words.
 std::string reason_of(int error_number);
 

@@ -154,10 +154,7 @@ class Assembler {
   void tell_adjustment(const JointFinding& finding) {
     result_.variance_factor = finding.variance_factor;
     if (finding.torn.empty()) return;
-    std::string names;
-    for (std::size_t k = 0; k < finding.torn.size() && k < 3; ++k)
-      names += (k == 0 ? "" : ", ") + name_of(finding.torn[k]);
-    if (finding.torn.size() > 3) names += fmt::format(" and {} more", finding.torn.size() - 3);
+    const std::string names = listed(finding.torn, 3, [&](int node) { return name_of(node); });
     result_.notes.push_back(
         fmt::format("the joint adjustment of planes was not applied: it would have moved {} by up to {:.0f} "
                     "mm, more than the links allow; the poses come from the links alone",
@@ -510,13 +507,10 @@ class Assembler {
   }
 
   [[nodiscard]] std::string words_of(const std::vector<int>& links) const {
-    std::string text;
-    for (std::size_t k = 0; k < links.size() && k < 3; ++k) {
-      const GraphLink& link = graph_.links[static_cast<std::size_t>(links[k])];
-      text += fmt::format("{}{} with {}", k == 0 ? "" : ", ", name_of(link.source), name_of(link.target));
-    }
-    if (links.size() > 3) text += fmt::format(" and {} more", links.size() - 3);
-    return text;
+    return listed(links, 3, [&](int k) {
+      const GraphLink& link = graph_.links[static_cast<std::size_t>(k)];
+      return name_of(link.source) + " with " + name_of(link.target);
+    });
   }
 
   /// To accept a link, another of its poses if there are any, or to reject it.
@@ -554,12 +548,9 @@ class Assembler {
       const bool same_kind = (other.doubt > 0.0) == (question.doubt > 0.0);
       if (same_kind && other.moved == question.moved && other.current == question.current) return;
     }
-    std::string scans;
-    for (std::size_t k = 0; k < question.moved.size(); ++k) {
-      stated.scans.push_back(static_cast<int>(nodes_[static_cast<std::size_t>(question.moved[k])].scan));
-      if (k < 3) scans += (k == 0 ? "" : ", ") + name_of(question.moved[k]);
-    }
-    if (question.moved.size() > 3) scans += fmt::format(" and {} more", question.moved.size() - 3);
+    for (const int node : question.moved)
+      stated.scans.push_back(static_cast<int>(nodes_[static_cast<std::size_t>(node)].scan));
+    const std::string scans = listed(question.moved, 3, [&](int node) { return name_of(node); });
     stated.current = question.current;
     stated.rival = question.rival;
     // One pair at a time: what a person says of it decides the others, or the next question asks of them.

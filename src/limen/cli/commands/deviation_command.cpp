@@ -11,6 +11,7 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/base/length_unit.h"
+#include "limen/base/text.h"
 #include "limen/cli/commands/commands.h"
 #include "limen/cli/commands/deviation_project.h"
 #include "limen/cli/inputs/cover_option.h"
@@ -153,7 +154,6 @@ std::string line_of(const ElementDeviation& it, const BimElement& element) {
 
 /// Elements that are missing or deviate most.
 std::string element_lines(const DeviationReport& report, const BimModel& model) {
-  constexpr std::size_t kShown = 20;
   std::vector<const ElementDeviation*> shown;
   for (const ElementDeviation& it : report.deviation.elements) {
     if (it.presence != Presence::not_judged) shown.push_back(&it);
@@ -164,12 +164,10 @@ std::string element_lines(const DeviationReport& report, const BimModel& model) 
   std::stable_sort(shown.begin(), shown.end(), [&](const ElementDeviation* a, const ElementDeviation* b) {
     return urgency(a) > urgency(b);
   });
-  std::string text =
-      "                                              median   95 %   class    shift covered   (mm)\n";
-  for (std::size_t k = 0; k < std::min(kShown, shown.size()); ++k)
-    text += line_of(*shown[k], model.elements[static_cast<std::size_t>(shown[k]->element)]);
-  if (shown.size() > kShown) text += fmt::format("... {} more\n", shown.size() - kShown);
-  return text;
+  return "                                              median   95 %   class    shift covered   (mm)\n" +
+         first_lines(shown, 20, [&](const ElementDeviation* it) {
+           return line_of(*it, model.elements[static_cast<std::size_t>(it->element)]);
+         });
 }
 
 std::string summary(const DeviationReport& report, const BimModel& model, const std::string& folder) {

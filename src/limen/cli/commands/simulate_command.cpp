@@ -211,9 +211,7 @@ bool means_model(const std::string& name) {
 }
 
 std::string known_scenes() {
-  std::string known;
-  for (const std::string& name : scene_names()) known += (known.empty() ? "" : ", ") + name;
-  return known + ", " + kOffice;
+  return fmt::format("{}, {}", fmt::join(scene_names(), ", "), kOffice);
 }
 
 /// An option that would be passed over without a word is a mistake.

@@ -336,10 +336,7 @@ std::string viewed_as_json(const ViewCommand& command, const ViewScene& scene, s
 
 std::string title_of(const ViewCommand& command, const ViewScene& scene) {
   if (!command.title.empty()) return command.title;
-  std::string title = scene.sides.front().name;
-  for (std::size_t k = 1; k < scene.sides.size() && k < 3; ++k) title += ", " + scene.sides[k].name;
-  if (scene.sides.size() > 3) title += fmt::format(" and {} more", scene.sides.size() - 3);
-  return title;
+  return listed(scene.sides, 3, [](const ViewSide& side) { return side.name; });
 }
 
 int run(const ViewCommand& command, const Session& session) {

@@ -58,11 +58,9 @@ class KnownScans {
         numbers.insert(poses.numbers.begin(), poses.numbers.end());
     }
     if (numbers.empty() || numbers.count(choice.pose) > 0) return;
-    std::string stated;
-    for (const int number : numbers) stated += fmt::format("{}{}", stated.empty() ? "" : ", ", number);
     throw Error(
         fmt::format("the link of {} and {} has no pose {}", choice.scans[0], choice.scans[1], choice.pose),
-        folder_.string(), "choose one of those in project.json: " + stated);
+        folder_.string(), fmt::format("choose one of those in project.json: {}", fmt::join(numbers, ", ")));
   }
 
   [[nodiscard]] std::string full_name(const std::string& name) const {

@@ -103,14 +103,6 @@ std::string last_name(const std::string& path) {
   return fs::path(path).filename().string();
 }
 
-std::string joined_names(const std::vector<std::string>& paths) {
-  constexpr std::size_t kShown = 3;
-  std::string text;
-  for (std::size_t k = 0; k < std::min(kShown, paths.size()); ++k)
-    text += (k == 0 ? "" : ", ") + last_name(paths[k]);
-  return paths.size() > kShown ? fmt::format("{} and {} more", text, paths.size() - kShown) : text;
-}
-
 void add_units(const Asked& asked, const char* key, const char* option, std::vector<std::string>& words) {
   const std::string unit = asked.text(key);
   if (unit.empty()) return;
@@ -162,7 +154,7 @@ PageJob whole_project(const Asked& asked) {
   add_target_size(asked, "board", "--board-side", job.words);
   add_repeats(asked, job.words);
   if (asked.flag("pdf")) job.words.emplace_back("--pdf");
-  job.title = joined_names(files);
+  job.title = listed(files, 3, last_name);
   return job;
 }
 
@@ -196,7 +188,7 @@ PageJob viewing(const Asked& asked) {
   } else {
     const std::vector<std::string> files = asked.files();
     job.words.insert(job.words.end(), files.begin(), files.end());
-    job.title = joined_names(files);
+    job.title = listed(files, 3, last_name);
   }
   job.words.insert(job.words.end(), {"-o", asked.results() + "/view.html"});
   return job;

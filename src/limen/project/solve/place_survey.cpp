@@ -16,6 +16,7 @@
 #include "limen/base/length_unit.h"
 #include "limen/base/progress.h"
 #include "limen/base/ranked.h"
+#include "limen/base/text.h"
 #include "limen/geometry/linear.h"
 #include "limen/project/control/control_datum.h"
 #include "limen/project/solve/joint_problem.h"
@@ -32,11 +33,7 @@ constexpr double kRigidM = 0.004;
 const double kRigidRad = radians(0.03);
 
 std::string names_of(const Survey& survey, const std::vector<std::size_t>& points) {
-  std::string text;
-  for (std::size_t k = 0; k < points.size() && k < 6; ++k)
-    text += (k == 0 ? "" : ", ") + survey.marks[points[k]].name;
-  if (points.size() > 6) text += fmt::format(" and {} more", points.size() - 6);
-  return text;
+  return listed(points, 6, [&](std::size_t k) { return survey.marks[k].name; });
 }
 
 std::vector<std::size_t> suspects_of(const ControlDatum& datum) {

@@ -12,6 +12,7 @@
 
 #include "limen/base/error.h"
 #include "limen/base/named.h"
+#include "limen/base/text.h"
 #include "limen/geometry/spline_motion.h"
 #include "limen/project/control/control_file.h"
 #include "limen/project/state/scan_names.h"
@@ -78,10 +79,7 @@ class SurveyReader {
  private:
   void note(const std::string& words, const std::vector<std::string>& names) {
     if (names.empty()) return;
-    std::string text = words;
-    for (std::size_t k = 0; k < names.size() && k < 5; ++k) text += (k == 0 ? " " : ", ") + names[k];
-    if (names.size() > 5) text += fmt::format(" and {} more", names.size() - 5);
-    survey_.notes.push_back(text);
+    survey_.notes.push_back(words + " " + listed(names, 5, [](const std::string& name) { return name; }));
   }
 
   void add_points(const std::string& file, PointRole role) {

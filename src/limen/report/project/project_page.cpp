@@ -205,12 +205,11 @@ std::string loops_table(const ProjectResult& result) {
   if (result.loops.empty()) return {};
   std::string text;
   for (const GraphLoop& loop : result.loops) {
-    std::string links;
-    for (const int link : loop.links) links += fmt::format("{}{}", links.empty() ? "" : ", ", link);
     text += fmt::format(
         "<tr><td>{}</td><td>{}</td><td class=\"n\">{:.1f}</td><td class=\"n\">{:.3f}</td><td class=\"n\">"
         "{:.1f}</td></tr>\n",
-        links, loop.closes ? "yes" : "no", 1e3 * loop.error_m, degrees(loop.error_rad), loop.chi_square);
+        fmt::join(loop.links, ", "), loop.closes ? "yes" : "no", 1e3 * loop.error_m, degrees(loop.error_rad),
+        loop.chi_square);
   }
   return table("Loops", "", {"links", "closes", "#misclosure, mm", "#deg", "#chi-squared (6 d.o.f.)"}, text);
 }
