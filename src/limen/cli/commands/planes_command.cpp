@@ -1,22 +1,19 @@
 // SPDX-FileCopyrightText: The limen authors
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 
-#include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/base/named.h"
-#include "limen/bim/read_bim.h"
+#include "limen/base/text.h"
 #include "limen/cli/commands/commands.h"
-#include "limen/cli/inputs/scan_options.h"
+#include "limen/cli/inputs/feature_command.h"
 #include "limen/extract/model/model_features.h"
 #include "limen/report/json/features_json.h"
 
@@ -45,54 +42,34 @@ void set_threshold(const std::string& text, ExtractOptions& extract) {
   }
 }
 
-std::string summary(const Features& features, const PlanesOptions& options) {
+std::string summary(const Features& features) {
   std::string text =
       fmt::format("{} planes (points within {:.1f} mm; noise {:.1f} mm)\n", features.planes.size(),
                   1e3 * features.inlier_threshold_m, 1e3 * features.noise_m);
   if (!features.planes.empty()) text += "      points    area m2   rms mm   normal\n";
-  constexpr std::size_t kShown = 10;
-  for (std::size_t i = 0; i < std::min(kShown, features.planes.size()); ++i) {
-    const PlanarPolygon& plane = features.planes[i];
-    const Vector3d& n = plane.plane.normal;
-    text += fmt::format("{:12} {:10.2f} {:8.2f}   {:6.3f} {:6.3f} {:6.3f}\n", plane.inliers, plane.area_m2,
-                        1e3 * plane.rms_m, n.x(), n.y(), n.z());
-  }
-  if (features.planes.size() > kShown) text += fmt::format("... {} more\n", features.planes.size() - kShown);
-  return text + fmt::format("written to {}\n", options.output);
-}
-
-int run_model(const PlanesOptions& options, const Session& session) {
-  const BimModel model =
-      read_model_input(options.scan, session, metres_per_unit_of(options.reading.units), "--units");
-  session.monitor->begin_stage("planes");
-  AtomicFile file(options.output);
-  const Features features = model_features(model).features;
-  const std::string json = features_json(features, summarise(options.scan, model));
-  return deliver(file, json, summary(features, options), session);
+  return text + first_lines(features.planes, 10, [](const PlanarPolygon& plane) {
+           const Vector3d& n = plane.plane.normal;
+           return fmt::format("{:12} {:10.2f} {:8.2f}   {:6.3f} {:6.3f} {:6.3f}\n", plane.inliers,
+                              plane.area_m2, 1e3 * plane.rms_m, n.x(), n.y(), n.z());
+         });
 }
 
 int run(PlanesOptions options, const Session& session) {
   options.extract.detect.detector = value_called(kPlaneDetectors, options.detector).value();
-  options.extract.detect.seed = session.common.seed;
   set_threshold(options.threshold, options.extract);
   if (options.min_inliers != 0) {
     options.extract.grow.min_inliers = options.min_inliers;
     options.extract.interior.min_inliers = options.min_inliers;
   }
   options.extract.check();
-  refuse_same_file(options.output, options.scan);
-  if (is_bim_file(options.scan)) return run_model(options, session);
-  FeatureScan read = read_feature_scan(options, session);
-  session.monitor->begin_stage("planes");
-  // Opened before the long work: a place that cannot be written to is an error at once.
-  AtomicFile file(options.output);
-  PrepareOptions preparing;
-  preparing.extract = options.extract;
-  preparing.gravity = gravity_of(options.gravity);
-  preparing.planes_only = true;
-  const Features features = features_of(std::move(read.scan), preparing, read.input, session);
-  const std::string json = features_json(features, read.input);
-  return deliver(file, json, summary(features, options), session);
+  FeatureTask task;
+  task.stage = "planes";
+  task.of_scan.extract = options.extract;
+  task.of_scan.planes_only = true;
+  task.of_model = [](const BimModel& model) { return model_features(model).features; };
+  task.json = features_json;
+  task.summary = [](const Features& features, const InputSummary&) { return summary(features); };
+  return take_features(options, std::move(task), session);
 }
 
 }  // namespace

@@ -188,17 +188,6 @@ ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice) {
   return options;
 }
 
-void add_feature_options(CommandLine& command, FeatureChoice& choice) {
-  command.add_option("SCAN", choice.scan, "A scan of any format limen reads")->required();
-  command.add_option("-o,--output FILE", choice.output, "The JSON file to write")->required();
-  command.add_option("--origin x,y,z", choice.origin,
-                     "Scanner position, in the coordinates of the points, metres");
-  add_gravity_option(command, choice.gravity, true);
-  add_units_option(command, choice.reading.units);
-  add_memory_option(command, choice.reading.memory);
-  add_trajectory_options(command, choice.reading);
-}
-
 ReadOptions read_options(const std::string& origin, const std::string& option, const std::string& gravity) {
   ReadOptions options;
   if (!origin.empty()) options.origin = parse_point(origin, option);
@@ -240,19 +229,6 @@ InputScan read_input_scan(const std::string& path, const ReadOptions& options, c
   return input;
 }
 
-FeatureScan read_feature_scan(const FeatureChoice& choice, const Session& session) {
-  const ReadOptions reading =
-      with_choice(read_options(choice.origin, "--origin", choice.gravity), choice.reading);
-  session.monitor->begin_stage("reading");
-  InputScan input = read_input_scan(choice.scan, reading, session, "--units");
-  FeatureScan read{std::move(input.scan), {}};
-  read.input = summarise(choice.scan, read.scan);
-  read.input.offset_applied = input.offset_applied;
-  if (const std::string hint = degrees_hint(read.scan); !hint.empty())
-    session.note(fmt::format("{}: {}", choice.scan, hint));
-  return read;
-}
-
 Vector3d offset_of_model(const std::string& path, const BimModel& model) {
   if (model.schema != "PLY") return Vector3d::Zero();
   const MappedFile file(path);
@@ -281,22 +257,6 @@ void note_place(InputSummary& summary, const ScannerPlace& place, const Session&
   summary.place = place;
   if (const std::string words = words_of_refuted(place); !words.empty())
     session.note(fmt::format("{}: {}", summary.path, words));
-}
-
-Features features_of(Scan&& scan, const PrepareOptions& options, InputSummary& summary,
-                     const Session& session) {
-  PreparedScan prepared = prepare_scan(std::move(scan), options, *session.monitor);
-  note_place(summary, prepared.place, session);
-  return in_own_frame(std::move(prepared));
-}
-
-int deliver(AtomicFile& file, const std::string& json, const std::string& summary, const Session& session) {
-  session.monitor->throw_if_cancelled();
-  file.write(json);
-  file.commit();
-  session.say(summary);
-  session.answer(json);
-  return kExitOk;
 }
 
 void refuse_same_file(const std::string& output, const std::string& input) {

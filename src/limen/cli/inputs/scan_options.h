@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "limen/base/atomic_file.h"
 #include "limen/cli/terminal/command.h"
 #include "limen/io/cloud/read_scan.h"
 #include "limen/io/trajectory/read_trajectory.h"
@@ -59,17 +58,6 @@ void require_trajectory(const ReadingChoice& choice);
 /// What read_options() gave, with the choice; reads the trajectory.
 ReadOptions with_choice(ReadOptions options, const ReadingChoice& choice);
 
-/// What every command that takes features from a scan to a file is asked for.
-struct FeatureChoice {
-  std::string scan;
-  std::string output;
-  std::string origin;
-  std::string gravity = "auto";
-  ReadingChoice reading;
-};
-/// Adds SCAN, --output, --origin, --gravity, --memory and --trajectory with what belongs to it.
-void add_feature_options(CommandLine& command, FeatureChoice& choice);
-
 /// What the user said of a scan: `origin` "x,y,z" or empty (`option` names it in messages), `gravity`
 /// "auto", "up" or "unknown".
 ReadOptions read_options(const std::string& origin, const std::string& option, const std::string& gravity);
@@ -89,13 +77,6 @@ struct InputScan {
 InputScan read_input_scan(const std::string& path, const ReadOptions& options, const Session& session,
                           const std::string& units_option);
 
-/// The one scan of a command that takes features, and what is reported of it. `choice.scan` is no model.
-struct FeatureScan {
-  Scan scan;
-  InputSummary input;
-};
-FeatureScan read_feature_scan(const FeatureChoice& choice, const Session& session);
-
 /// Reads a building model and notes its warnings; `metres_per_unit`: of a mesh, where the user says so, and
 /// `units_option`: by which (empty: there is none). Throws Error where it cannot be a building in metres.
 BimModel read_model_input(const std::string& path, const Session& session,
@@ -113,16 +94,6 @@ Gravity gravity_of(const std::string& name);
 /// Enters where the scanner of a scan was found to have stood; notes a place that was said and cannot be
 /// right.
 void note_place(InputSummary& summary, const ScannerPlace& place, const Session& session);
-
-/// What is made of a scan, which is given up, for a command that takes features: frame, planes and what
-/// `options` ask for; its place is noted and entered. Everything about the returned features' local origin,
-/// in the scan's own frame.
-Features features_of(Scan&& scan, const PrepareOptions& options, InputSummary& summary,
-                     const Session& session);
-
-/// The end of a command that takes features: `json` goes into the file and to who asked for it, `summary` to
-/// a reader. Returns the exit status.
-int deliver(AtomicFile& file, const std::string& json, const std::string& summary, const Session& session);
 
 /// Throws Error where `output` is the file `input`: a result never replaces what it was made from.
 void refuse_same_file(const std::string& output, const std::string& input);

@@ -3,18 +3,15 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "limen/geometry/segment.h"
 #include "limen/model/features.h"
 #include "limen/report/json/result_json.h"
 
 namespace limen {
 
 /// The text of a segments file: `segments`, of each its ends `a` and `b`, three numbers each in the file's
-/// own (world) coordinates, metres; `input` and `version` beside it. `segments` are about `local_origin`.
-std::string segments_json(const std::vector<Segment>& segments, const Vector3d& local_origin,
-                          const InputSummary& input);
+/// own (world) coordinates, metres; `input` and `version` beside it.
+std::string segments_json(const Features& features, const InputSummary& input);
 
 /// The text of a features file. Coordinates are the scan file's own (world): of every plane `normal`,
 /// `offset` (normal . x = offset, metres), `outline` (of the largest part: the outer ring, then the holes,
