@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <optional>
@@ -12,7 +13,6 @@
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
 #include "limen/base/random.h"
-#include "limen/consensus/trial_count.h"
 
 // M-estimator sample consensus (Torr and Zisserman 2000; 2021, section 2.2) as estimator x score x sampler:
 // the estimator makes a model from a few items and tells how far each item is from a model, the score sums
@@ -97,6 +97,20 @@ class UniformSampler {
   std::size_t size_;
   std::uint64_t seed_;
 };
+
+/// Trials after which one sample without outliers was drawn with probability `confidence` (in (0, 1)), where
+/// a share `inlier_ratio` of the items are inliers: log(1 - confidence) / log(1 - inlier_ratio^sample_size),
+/// rounded up (Fischler and Bolles 1981). At least 1, at most `most`, which is also the answer for ratio 0.
+inline std::size_t trial_count(double inlier_ratio, std::size_t sample_size, double confidence,
+                               std::size_t most) {
+  if (!(confidence > 0.0 && confidence < 1.0)) throw_bad_option("confidence", confidence, "in (0, 1)");
+  const double good = std::pow(std::clamp(inlier_ratio, 0.0, 1.0), static_cast<double>(sample_size));
+  if (good >= 1.0) return 1;
+  // log1p keeps what 1 - good would lose for a ratio of a thousandth.
+  const double trials = std::ceil(std::log1p(-confidence) / std::log1p(-good));
+  if (!(trials < static_cast<double>(most))) return std::max<std::size_t>(1, most);
+  return std::max<std::size_t>(1, static_cast<std::size_t>(trials));
+}
 
 struct MsacOptions {
   double threshold = 1.0;          ///< of the residuals, > 0

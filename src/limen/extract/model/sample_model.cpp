@@ -3,14 +3,13 @@
 #include "limen/extract/model/sample_model.h"
 
 #include <cmath>
-#include <unordered_map>
 
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
 #include "limen/base/random.h"
 #include "limen/extract/model/model_surface.h"
-#include "limen/geometry/cell_key.h"
+#include "limen/geometry/points_apart.h"
 #include "limen/geometry/polygon_clip.h"
 
 namespace limen {
@@ -19,49 +18,8 @@ namespace {
 constexpr double kTrialsPerPlace = 6.0;  // points tried per place that one could have
 constexpr double kMostDarts = 2e7;       // points tried; more: Error
 
-/// Points that keep their distance, in cubes as wide as that: only neighbouring cubes have to be asked.
-class Disks {
- public:
-  explicit Disks(double spacing_m) : spacing_m_(spacing_m) {}
-
-  /// Whether `x` is far enough from all others; then it is kept.
-  bool add(const Vector3d& x) {
-    const Vector3d cell = cell_of(x, spacing_m_);
-    // Its own cube first: late darts mostly end there.
-    if (taken(cell_key(cell), x)) return false;
-    for (int k = 0; k < 27; ++k) {
-      if (k != 13 && taken(cell_key(cell + way_to_cell(k)), x)) return false;
-    }
-    const auto [place, fresh] = last_.try_emplace(cell_key(cell), points_.size());
-    before_.push_back(fresh ? kNone : place->second);
-    place->second = points_.size();
-    points_.push_back(x);
-    return true;
-  }
-
-  [[nodiscard]] std::vector<Vector3d>& points() { return points_; }
-
- private:
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-
-  /// Whether a point of that cube is too near.
-  [[nodiscard]] bool taken(std::int64_t key, const Vector3d& x) const {
-    const auto found = last_.find(key);
-    if (found == last_.end()) return false;
-    for (std::size_t i = found->second; i != kNone; i = before_[i]) {
-      if ((points_[i] - x).squaredNorm() < spacing_m_ * spacing_m_) return true;
-    }
-    return false;
-  }
-
-  double spacing_m_;
-  std::vector<Vector3d> points_;
-  std::vector<std::size_t> before_;                     // of each point: the one before it in its cube
-  std::unordered_map<std::int64_t, std::size_t> last_;  // of each cube: its last point
-};
-
 /// Darts thrown at the polygon's box, as many per area as `per_m2` says.
-void throw_darts(const PlanarPolygon& polygon, double per_m2, RandomStream random, Disks& disks) {
+void throw_darts(const PlanarPolygon& polygon, double per_m2, RandomStream random, PointsApart& disks) {
   const Box2 box = box_of(polygon.parts);
   const Vector2d size = box.high - box.low;
   const auto darts = static_cast<std::size_t>(std::ceil(per_m2 * size.prod()));
@@ -89,7 +47,7 @@ Scan sample_model(const BimModel& model, const ModelSamplingOptions& options) {
         model.name,
         fmt::format("give a spacing of {:.2f} m or more", options.spacing_m * std::sqrt(darts / kMostDarts)));
   }
-  Disks disks(options.spacing_m);
+  PointsApart disks(options.spacing_m);
   for (std::size_t i = 0; i < surface.polygons.size(); ++i)
     throw_darts(surface.polygons[i], per_m2, RandomStream(options.seed, i), disks);
   Scan scan;

@@ -16,6 +16,7 @@
 #include "limen/extract/cells/cell_runs.h"
 #include "limen/extract/targets/fit_targets.h"
 #include "limen/geometry/cell_key.h"
+#include "limen/geometry/points_apart.h"
 
 namespace limen {
 namespace {
@@ -144,21 +145,10 @@ class TargetSearch {
       return std::tuple(-a.worth, a.centre.x(), a.centre.y(), a.centre.z()) <
              std::tuple(-b.worth, b.centre.x(), b.centre.y(), b.centre.z());
     });
-    std::unordered_map<std::int64_t, std::vector<Vector3d>> taken;
+    PointsApart taken(0.4 * size_m_);
     std::vector<TargetCandidate> best;
     for (const TargetCandidate& candidate : all) {
-      const Vector3d cell = cell_of(candidate.centre, size_m_);
-      bool free = true;
-      for (int k = 0; free && k < 27; ++k) {
-        const auto near = taken.find(cell_key(cell + way_to_cell(k)));
-        free = near == taken.end() ||
-               std::none_of(near->second.begin(), near->second.end(), [&](const Vector3d& other) {
-                 return (other - candidate.centre).norm() < 0.4 * size_m_;
-               });
-      }
-      if (!free) continue;
-      taken[cell_key(cell)].push_back(candidate.centre);
-      best.push_back(candidate);
+      if (taken.add(candidate.centre)) best.push_back(candidate);
     }
     return best;
   }

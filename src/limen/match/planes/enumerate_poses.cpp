@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <unordered_map>
 
 #include <Eigen/LU>
 
 #include "limen/base/angles.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
-#include "limen/geometry/cell_key.h"
+#include "limen/geometry/points_apart.h"
 #include "limen/match/planes/axis_pairs.h"
 #include "limen/match/planes/enumerate_rotations.h"
 #include "limen/match/planes/least_precedence.h"
@@ -356,20 +355,10 @@ class PoseEnumerator {
   /// Of poses of one rotation, best first, those of which no two are nearer than kSameShiftM.
   [[nodiscard]] std::vector<PoseCandidate> distinct(const std::vector<PoseCandidate>& poses) const {
     std::vector<PoseCandidate> kept;
-    std::unordered_map<std::int64_t, std::vector<Vector3d>> known;  // by cubes as wide as poses are apart
+    PointsApart shifts(kSameShiftM);
     for (const PoseCandidate& pose : poses) {
-      const Vector3d& at = pose.target_from_source.translation;
-      const Vector3d cell = cell_of(at, kSameShiftM);
-      bool near = false;
-      for (int k = 0; k < 27 && !near; ++k) {
-        const auto found = known.find(cell_key(cell + way_to_cell(k)));
-        if (found == known.end()) continue;
-        near = std::any_of(found->second.begin(), found->second.end(),
-                           [&](const Vector3d& other) { return (other - at).norm() < kSameShiftM; });
-      }
-      if (near) continue;
+      if (!shifts.add(pose.target_from_source.translation)) continue;
       kept.push_back(pose);
-      known[cell_key(cell)].push_back(at);
       if (kept.size() >= static_cast<std::size_t>(options_.max_poses)) break;
     }
     return kept;
