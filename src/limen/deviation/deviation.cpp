@@ -103,13 +103,6 @@ void DeviationOptions::check() const {
     throw_bad_option("max_angle_deg", max_angle_deg, "within (0, 90)");
   if (!(tile_m > 0.0)) throw_bad_option("tile_m", tile_m, "more than 0");
   if (rays < 1) throw_bad_option("rays", static_cast<double>(rays), "1 or more");
-  if (!(min_judged_m2 > 0.0)) throw_bad_option("min_judged_m2", min_judged_m2, "more than 0");
-  if (!(min_missing_m2 > 0.0)) throw_bad_option("min_missing_m2", min_missing_m2, "more than 0");
-  if (!(min_found_share > 0.0 && min_found_share < 1.0))
-    throw_bad_option("min_found_share", min_found_share, "within (0, 1)");
-  if (!(min_held_share > 0.0 && min_held_share < 0.3))
-    throw_bad_option("min_held_share", min_held_share, "within (0, 0.3)");
-  if (!(max_shift_sigma_m > 0.0)) throw_bad_option("max_shift_sigma_m", max_shift_sigma_m, "more than 0");
   if (!(cluster_m > 0.0)) throw_bad_option("cluster_m", cluster_m, "more than 0");
 }
 

@@ -14,18 +14,12 @@
 namespace limen {
 
 struct DeviationOptions {
-  double max_distance_m = 0.10;       ///< surface farther from every face is not the model's, > 0
-  double max_angle_deg = 30.0;        ///< between the surface at a point and its face, in (0, 90)
-  double tile_m = 0.05;               ///< edge of the tiles by which coverage is counted, > 0
-  std::size_t rays = 400000;          ///< of the scan that are followed through the model, about
-  int min_points = 50;                ///< on an element that counts as found
-  double min_judged_m2 = 0.05;        ///< surface that rays reached; with less an element is not judged, > 0
-  double min_missing_m2 = 0.1;        ///< that rays passed through where an element is not found, > 0
-  double min_found_share = 0.5;       ///< of that surface; an element with less is not found
-  double min_held_share = 0.02;       ///< of the points' evidence that must hold a direction of a shift
-  std::size_t min_held_points = 300;  ///< and so many points on faces across it
-  double max_shift_sigma_m = 0.004;   ///< a direction known less well is open, > 0
-  double cluster_m = 0.15;            ///< objects not in the model: gaps up to this join pieces, > 0
+  double max_distance_m = 0.10;          ///< surface farther from every face is not the model's, > 0
+  double max_angle_deg = 30.0;           ///< between the surface at a point and its face, in (0, 90)
+  double tile_m = 0.05;                  ///< edge of the tiles by which coverage is counted, > 0
+  std::size_t rays = 400000;             ///< of the scan that are followed through the model, about
+  int min_points = 50;                   ///< on an element that counts as found
+  double cluster_m = 0.15;               ///< objects not in the model: gaps up to this join pieces, > 0
   std::size_t min_cluster_points = 100;  ///< smaller pieces are not reported
 
   void check() const;

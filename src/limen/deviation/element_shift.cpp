@@ -23,6 +23,9 @@ constexpr double kAcross = 0.5;           // cosine: a face across a direction
 constexpr double kNear = 0.95;            // cosine: a face across the direction itself
 constexpr double kSmallFace = 0.2;        // of the largest one's weight: it does not tell the direction
 constexpr double kMostNoise = 1.8;        // of a typical face's: one that scatters more is no plane
+constexpr double kHeldShare = 0.02;       // of the points' evidence that must hold a direction of a shift
+constexpr std::size_t kHeldPoints = 300;  // and so many points on faces across it
+constexpr double kMostSigmaM = 0.004;     // a direction known less well is open
 
 /// Start of the peak: middle of the fullest window.
 double peak_of(const std::vector<float>& distances, double most) {
@@ -125,8 +128,7 @@ Vector3d across(Vector3d vector, const std::vector<Vector3d>& others) {
 }
 
 /// Directions that enough points hold, as an orthonormal basis; the others go to `open`.
-std::vector<Vector3d> held_directions(const std::vector<FaceOffset>& faces, const DeviationOptions& options,
-                                      std::vector<Vector3d>& open) {
+std::vector<Vector3d> held_directions(const std::vector<FaceOffset>& faces, std::vector<Vector3d>& open) {
   Matrix3d information = Matrix3d::Zero();
   for (const FaceOffset& face : faces) information += weight_of(face) * face.normal * face.normal.transpose();
   const Spectrum3 spectrum = spectrum_of(information);
@@ -139,8 +141,7 @@ std::vector<Vector3d> held_directions(const std::vector<FaceOffset>& faces, cons
     std::size_t points = 0;
     for (const FaceOffset& face : faces)
       points += std::abs(face.normal.dot(direction)) > kAcross ? face.points : 0;
-    const bool enough = spectrum.values[k] > options.min_held_share * information.trace() &&
-                        points >= options.min_held_points;
+    const bool enough = spectrum.values[k] > kHeldShare * information.trace() && points >= kHeldPoints;
     if (enough) {
       held.push_back(across(normal_near(faces, direction), held));
     } else {
@@ -277,14 +278,14 @@ Basis basis_of(const std::vector<Vector3d>& directions) {
 
 ElementShift shift_of(const std::vector<FaceOffset>& faces, const DeviationOptions& options) {
   ElementShift result;
-  std::vector<Vector3d> held = held_directions(faces, options, result.open);
+  std::vector<Vector3d> held = held_directions(faces, result.open);
   // Directions that the faces hold too loosely are open too, the loosest first.
   while (!held.empty()) {
     const Basis basis = basis_of(held);
     const ShiftFit fit = fit_within(basis, faces, 3.0 * options.max_distance_m);
     Eigen::Index loosest = 0;
     const double variance = fit.covariance.diagonal().maxCoeff(&loosest);
-    if (variance <= options.max_shift_sigma_m * options.max_shift_sigma_m) {
+    if (variance <= kMostSigmaM * kMostSigmaM) {
       result.shift_m = fit.shift;
       result.sigma_m = (basis * fit.covariance * basis.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
       break;

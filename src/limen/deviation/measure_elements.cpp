@@ -9,7 +9,10 @@
 namespace limen {
 namespace {
 
-constexpr double kMissingShare = 0.01;  // of an element's surface, that rays passed: less says little of it
+constexpr double kMissingShare = 0.01;   // of an element's surface, that rays passed: less says little of it
+constexpr double kLeastJudgedM2 = 0.05;  // surface that rays reached; with less an element is not judged
+constexpr double kLeastMissingM2 = 0.1;  // that rays passed through where an element is not found
+constexpr double kFoundShare = 0.5;  // of the surface that rays reached; an element with less is not found
 
 /// What may let light pass: that rays went through it is no evidence.
 bool may_be_pane(BimKind kind) {
@@ -19,11 +22,11 @@ bool may_be_pane(BimKind kind) {
 Presence presence_of(const ElementDeviation& it, BimKind kind, const DeviationOptions& options) {
   const double reached = it.covered_m2 + it.passed_m2;
   const bool seen =
-      it.points >= static_cast<std::size_t>(options.min_points) && it.covered_m2 >= options.min_judged_m2;
-  if (seen && (it.covered_share >= options.min_found_share || may_be_pane(kind))) return Presence::found;
-  if (reached < options.min_judged_m2 || may_be_pane(kind)) return Presence::not_judged;
-  const double least = std::max(options.min_missing_m2, kMissingShare * it.area_m2);
-  const bool missing = it.covered_share < options.min_found_share && it.passed_m2 >= least;
+      it.points >= static_cast<std::size_t>(options.min_points) && it.covered_m2 >= kLeastJudgedM2;
+  if (seen && (it.covered_share >= kFoundShare || may_be_pane(kind))) return Presence::found;
+  if (reached < kLeastJudgedM2 || may_be_pane(kind)) return Presence::not_judged;
+  const double least = std::max(kLeastMissingM2, kMissingShare * it.area_m2);
+  const bool missing = it.covered_share < kFoundShare && it.passed_m2 >= least;
   return missing ? Presence::not_found : Presence::not_judged;
 }
 

@@ -34,6 +34,8 @@
 namespace limen {
 namespace {
 
+constexpr int kPairsPerScan = 12;  // that are tried at most, on average, where not all are
+
 class Run {
  public:
   Run(const ProjectInputs& inputs, std::filesystem::path folder, const ProjectOptions& options,
@@ -312,7 +314,7 @@ class Run {
   [[nodiscard]] double risk() const { return options_.registering.verdict.risk; }
 
   [[nodiscard]] bool few() const {
-    return options_.all_pairs || nodes_.size() <= static_cast<std::size_t>(options_.pairs_per_scan) + 1;
+    return options_.all_pairs || nodes_.size() <= static_cast<std::size_t>(kPairsPerScan) + 1;
   }
 
   std::vector<TriedPair> try_all(const PairList& pairs, PairSearch search = PairSearch::level) {
@@ -332,7 +334,7 @@ class Run {
   }
 
   std::vector<TriedPair> waves() {
-    return try_in_waves(nodes_, words_, risk(), options_.pairs_per_scan,
+    return try_in_waves(nodes_, words_, risk(), kPairsPerScan,
                         [this](const PairList& pairs) { return try_all(pairs); });
   }
 
@@ -447,7 +449,6 @@ void ProjectOptions::check() const {
   engine.check();
   targets.check();
   if (file_sigma_m && !(*file_sigma_m > 0.0)) throw_bad_option("file_sigma_m", *file_sigma_m, "more than 0");
-  if (pairs_per_scan < 1) throw_bad_option("pairs_per_scan", pairs_per_scan, "1 or more");
 }
 
 const char* to_string(ProjectOutcome outcome) {

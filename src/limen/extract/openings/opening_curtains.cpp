@@ -105,9 +105,8 @@ std::vector<OpeningRectangle> curtained_rectangles(const Scan& scan, const WallE
     if (!is_curtain(hanging, noise_m)) continue;
     OpeningRectangle rectangle = measured({.box = region}, evidence, grid, options);
     const auto round = std::count_if(rectangle.bounded.begin(), rectangle.bounded.end(),
-                                     [&](double share) { return share >= options.min_bounded; });
-    if (round < 3 || rectangle.bounded[static_cast<std::size_t>(Side::bottom)] < options.min_bounded)
-      continue;
+                                     [&](double share) { return share >= kMinBounded; });
+    if (round < 3 || rectangle.bounded[static_cast<std::size_t>(Side::bottom)] < kMinBounded) continue;
     rectangle.box = hanging.box();
     rectangle.box.low.array() += kOverhang_m;
     rectangle.box.high.array() -= kOverhang_m;

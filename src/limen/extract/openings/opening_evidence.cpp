@@ -20,6 +20,8 @@ constexpr double kMobileRelief_m = 0.12;  // plinths, bands and cornices of faç
 constexpr double kStaticRelief_m = 0.05;  // linings; farther before an inner wall hang curtains
 constexpr double kSurelyWall_m2 = 6.0;    // a lower wall of a low room; no furniture is that large
 constexpr double kParallel = 0.9962;      // cosine of 5 degrees
+constexpr double kSameWall_m = 0.03;      // planes this near to each other, facing one way, are one wall
+constexpr double kCurtainGap_m = 0.3;     // what hangs this near before the wall may be a curtain
 
 const Vector3d& centre_of(const Scan& scan, const OpeningOptions& options, std::size_t i) {
   return scan.centre_known() ? scan.centre(i) : *options.centre;
@@ -75,7 +77,7 @@ void add_members(OpeningWall& wall, const std::vector<PlanarPolygon>& polygons,
         continue;
       if (planes[k].plane.normal.dot(wall.plane.normal) < kParallel) continue;
       const Vector3d& centroid = polygons[k].centroid;
-      if (std::abs(wall.plane.signed_distance(centroid)) > options.same_wall_m) continue;
+      if (std::abs(wall.plane.signed_distance(centroid)) > kSameWall_m) continue;
       const Box2 box = box_in(wall.frame, polygons[k]);
       if (box.empty() || (!wall.box.empty() && gap_between(wall.box, box) > reach_m)) continue;
       wall.box.add(box.low);
@@ -194,8 +196,7 @@ class Tracer {
     if ((low.array() > target.box.high.array()).any() || (high.array() < target.box.low.array()).any())
       return false;
     if (signed_distances(target.wall->plane, centres).second < kMinStandOff_m) return false;
-    return signed_distances(target.wall->plane, points).first <=
-           std::max(options_.max_curtain_gap_m, kMobileRelief_m);
+    return signed_distances(target.wall->plane, points).first <= std::max(kCurtainGap_m, kMobileRelief_m);
   }
 
   /// What a point says that lies `before` the wall's plane (negative: behind), if anything.
@@ -210,7 +211,7 @@ class Tracer {
     }
     if (before_m > on_wall_m_) {
       kind = SampleKind::cover;
-      return before_m <= options_.max_curtain_gap_m;
+      return before_m <= kCurtainGap_m;
     }
     if (before_m > -side_m_) {
       kind = SampleKind::wall;
@@ -225,7 +226,7 @@ class Tracer {
     const OpeningWall& wall = *targets_[w].wall;
     const Vector3d& x = scan_.points[point];
     const double before_m = wall.plane.signed_distance(x);
-    if (before_m > std::max(options_.max_curtain_gap_m, kMobileRelief_m)) return;
+    if (before_m > std::max(kCurtainGap_m, kMobileRelief_m)) return;
     const Vector3d& centre = centre_of(scan_, options_, point);
     const double off_m = wall.plane.signed_distance(centre);
     if (off_m < kMinStandOff_m || off_m <= before_m) return;

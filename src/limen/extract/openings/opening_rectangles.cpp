@@ -66,6 +66,7 @@ constexpr double kTrimShare = 0.12;  // of a side's length that is left out at e
 constexpr double kSearch_m = 0.3;    // how far a side is looked for beyond its region
 constexpr int kRounds = 2;
 constexpr double kMinPane_m = 0.15;     // smaller regions are no part of an opening
+constexpr double kMergedBar_m = 0.12;   // bars flush with the wall no wider than this do not divide
 constexpr double kMinSupport_m = 0.08;  // beyond a side within which wall must be seen
 
 class Fitter {
@@ -283,7 +284,7 @@ OpeningRectangle measured(OpeningRectangle rectangle, const WallEvidence& eviden
   for (const Side side : kSides) {
     const auto k = static_cast<std::size_t>(side);
     rectangle.bounded[k] = bounded_share(box, side, grid);
-    if (rectangle.bounded[k] < options.min_bounded) rectangle.sigma_m[k] = kUnboundedSigma_m;
+    if (rectangle.bounded[k] < kMinBounded) rectangle.sigma_m[k] = kUnboundedSigma_m;
   }
   return rectangle;
 }
@@ -301,7 +302,7 @@ std::vector<OpeningRectangle> opening_rectangles(const WallEvidence& evidence, c
     boxes.push_back(fitted.back().box);
   }
   std::vector<OpeningRectangle> rectangles;
-  for (const Box2& box : merged_boxes(std::move(boxes), options.merge_bar_m)) {
+  for (const Box2& box : merged_boxes(std::move(boxes), kMergedBar_m)) {
     const Vector2d size = box.high - box.low;
     if (size.x() < options.min_width_m || size.y() < options.min_height_m) continue;
     const auto alone = std::find_if(fitted.begin(), fitted.end(), [&](const OpeningRectangle& other) {

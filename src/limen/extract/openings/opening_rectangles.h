@@ -11,6 +11,8 @@ namespace limen {
 
 /// Deviation that says: where the side lies was not seen.
 constexpr double kUnboundedSigma_m = 1.0;
+/// Part of a side along which wall must be seen.
+constexpr double kMinBounded = 0.5;
 
 /// A sample's place across a side, growing outwards.
 struct SideMark {

@@ -40,6 +40,8 @@ namespace {
 constexpr double kMinKnown = 0.25;        // part of a rectangle in which something was seen behind the wall
 constexpr std::size_t kMinEvidence = 20;  // rays
 constexpr double kMinWallRound = 0.5;
+constexpr double kMinOpen = 0.7;   // seen part of the rectangle that is open
+constexpr double kNiche_m = 0.25;  // shallower recesses with a flat closed back are blind, seen from outside
 constexpr double kThroughShare = 0.05;
 constexpr double kFoot_m = 0.15;  // a door's lower end is no higher above the foot of the wall beside it
 
@@ -165,13 +167,13 @@ bool acceptable(const Features& features, const OpeningRectangle& rectangle, con
   const Vector2d size = rectangle.box.high - rectangle.box.low;
   if (size.x() < options.min_width_m || size.x() > options.max_width_m) return false;
   if (size.y() < options.min_height_m || size.y() > options.max_height_m) return false;
-  if (rectangle.evidence < kMinEvidence || rectangle.fill < options.min_fill) return false;
+  if (rectangle.evidence < kMinEvidence || rectangle.fill < kMinOpen) return false;
   if (rectangle.known < kMinKnown) return false;
   if (wall_round(evidence, grid, rectangle.box) < kMinWallRound) return false;
   int bounded = 0;
-  for (const double share : rectangle.bounded) bounded += share >= options.min_bounded ? 1 : 0;
+  for (const double share : rectangle.bounded) bounded += share >= kMinBounded ? 1 : 0;
   const auto has = [&](Side side) {
-    return rectangle.bounded[static_cast<std::size_t>(side)] >= options.min_bounded;
+    return rectangle.bounded[static_cast<std::size_t>(side)] >= kMinBounded;
   };
   if (bounded >= 3) return true;
   // A door ends at the floor; what has no lintel is a passage between two walls.
@@ -279,7 +281,7 @@ std::vector<FoundHole> holes_of(const Scan& scan, const Features& features, cons
   std::vector<FramedRectangle> framed;
   for (const OpeningRectangle& rectangle : opening_rectangles(evidence, grid, options)) {
     if (!acceptable(features, rectangle, evidence, grid, options)) continue;
-    if (scan.mobile() && is_niche(evidence, grid, rectangle.box, options.max_niche_m)) continue;
+    if (scan.mobile() && is_niche(evidence, grid, rectangle.box, kNiche_m)) continue;
     holes.push_back(make_hole(scan, features, evidence, grid, rectangle));
     framed.push_back(holes.back().framed);
   }
@@ -331,7 +333,6 @@ std::vector<Opening> without_doubles(const std::vector<Opening>& openings) {
 void OpeningOptions::check() const {
   walls.check();
   if (!(min_wall_m >= 0.0)) throw_bad_option("min_wall_m", min_wall_m, "at least 0");
-  if (!(same_wall_m > 0.0)) throw_bad_option("same_wall_m", same_wall_m, "greater than 0");
   if (!(min_depth_m > 0.0)) throw_bad_option("min_depth_m", min_depth_m, "greater than 0");
   if (!(through_m > min_depth_m)) throw_bad_option("through_m", through_m, "greater than min_depth_m");
   if (!(min_width_m > 0.0)) throw_bad_option("min_width_m", min_width_m, "greater than 0");
@@ -339,11 +340,6 @@ void OpeningOptions::check() const {
   if (!(max_width_m > min_width_m)) throw_bad_option("max_width_m", max_width_m, "greater than min_width_m");
   if (!(max_height_m > min_height_m))
     throw_bad_option("max_height_m", max_height_m, "greater than min_height_m");
-  if (!(min_fill > 0.0 && min_fill <= 1.0)) throw_bad_option("min_fill", min_fill, "in (0, 1]");
-  if (!(min_bounded > 0.0 && min_bounded <= 1.0)) throw_bad_option("min_bounded", min_bounded, "in (0, 1]");
-  if (!(merge_bar_m >= 0.0)) throw_bad_option("merge_bar_m", merge_bar_m, "at least 0");
-  if (!(max_niche_m >= 0.0)) throw_bad_option("max_niche_m", max_niche_m, "at least 0");
-  if (!(max_curtain_gap_m >= 0.0)) throw_bad_option("max_curtain_gap_m", max_curtain_gap_m, "at least 0");
 }
 
 std::vector<Opening> find_openings(const Scan& scan, const ExtractedFeatures& extracted, const Vector3d& up,

@@ -16,19 +16,13 @@ namespace limen {
 /// Which openings are looked for.
 struct OpeningOptions {
   FacadeCriteria walls = {radians(3.0), 0.8, 1.0, 0.3};  ///< in what openings are looked for
-  double min_wall_m = 2.2;     ///< height of a wall, all its planes together; furniture is lower; >= 0
-  double same_wall_m = 0.03;   ///< planes this near to each other, facing one way, are one wall; > 0
-  double min_depth_m = 0.03;   ///< points at least this far behind the wall lie in an opening; > 0
-  double through_m = 0.6;      ///< farther behind they lie beyond it: view through; > min_depth_m
-  double min_width_m = 0.35;   ///< of an opening; > 0
-  double min_height_m = 0.35;  ///< of an opening; > 0
-  double max_width_m = 6.0;    ///< of an opening; > min_width_m
-  double max_height_m = 6.0;   ///< of an opening; > min_height_m
-  double min_fill = 0.7;       ///< seen part of the rectangle that is open; in (0, 1]
-  double min_bounded = 0.5;    ///< part of a side along which wall must be seen; in (0, 1]
-  double merge_bar_m = 0.12;   ///< bars flush with the wall no wider than this do not divide; >= 0
-  double max_niche_m = 0.25;   ///< shallower recesses with a flat closed back are blind, seen from outside
-  double max_curtain_gap_m = 0.3;  ///< what hangs this near before the wall may be a curtain; >= 0
+  double min_wall_m = 2.2;         ///< height of a wall, all its planes together; furniture is lower; >= 0
+  double min_depth_m = 0.03;       ///< points at least this far behind the wall lie in an opening; > 0
+  double through_m = 0.6;          ///< farther behind they lie beyond it: view through; > min_depth_m
+  double min_width_m = 0.35;       ///< of an opening; > 0
+  double min_height_m = 0.35;      ///< of an opening; > 0
+  double max_width_m = 6.0;        ///< of an opening; > min_width_m
+  double max_height_m = 6.0;       ///< of an opening; > min_height_m
   std::optional<Vector3d> centre;  ///< scanner position, about the local origin, where the scan has none
 
   void check() const;

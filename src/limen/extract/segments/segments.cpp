@@ -83,6 +83,8 @@ ExtractedFeatures with_small_planes(const Scan& scan, const ExtractedFeatures& e
 constexpr double kShortestRun = 0.5;  // of an outline, in units of the shortest segment
 constexpr double kBeyond = 0.5;       // how far a border is looked for beyond its run, in units of the run
 constexpr int kSmooth = 2;            // bins to either side that a place's sight is smoothed over
+constexpr int kSmallPlane = 60;       // points of small planes that are looked for among those without one
+const double kBorderAngleRad = radians(0.6);  // borders whose direction is known less well are left out
 
 std::vector<std::unique_ptr<PlaneImage>> images_of(const Scan& scan, const std::vector<PlanarPolygon>& planes,
                                                    const std::vector<std::int32_t>& labels,
@@ -110,9 +112,7 @@ class BorderFinder {
       // An outline is cut where it wavers: the points may go on along the line.
       const double beyond_m = std::max(o_.join_gap_m, kBeyond * (run.line.end_m - run.line.begin_m));
       const std::optional<BorderFit> fit = fit_border(image, run, beyond_m, ambiguous_);
-      if (!fit || fit->sigma_m > o_.max_border_sigma_m ||
-          fit->angle_sigma_rad > radians(o_.max_border_angle_deg))
-        continue;
+      if (!fit || fit->sigma_m > o_.max_border_sigma_m || fit->angle_sigma_rad > kBorderAngleRad) continue;
       add_edges(plane, image, *fit, edges);
     }
     return edges;
@@ -218,14 +218,11 @@ void SegmentOptions::check() const {
   if (!(min_length_m > 0.0)) throw_bad_option("min_length_m", min_length_m, "greater than 0");
   if (!(min_angle_deg > 0.0 && min_angle_deg <= 90.0))
     throw_bad_option("min_angle_deg", min_angle_deg, "greater than 0, at most 90");
-  if (min_plane_points < 0) throw_bad_option("min_plane_points", min_plane_points, "0 or more");
   // One line of a building has no longer gap, and every line is extended by it.
   if (!(join_gap_m >= 0.0 && join_gap_m <= 100.0))
     throw_bad_option("join_gap_m", join_gap_m, "from 0 to 100");
   if (!(max_border_sigma_m > 0.0))
     throw_bad_option("max_border_sigma_m", max_border_sigma_m, "greater than 0");
-  if (!(max_border_angle_deg > 0.0))
-    throw_bad_option("max_border_angle_deg", max_border_angle_deg, "greater than 0");
 }
 
 std::vector<DetectedEdge> find_edges(const Scan& scan, const ExtractedFeatures& extracted,
@@ -233,8 +230,8 @@ std::vector<DetectedEdge> find_edges(const Scan& scan, const ExtractedFeatures& 
   options.check();
   std::vector<std::unique_ptr<PlaneImage>> images =
       images_of(scan, extracted.features.planes, extracted.labels, monitor);
-  const ExtractedFeatures more = with_small_planes(scan, extracted, completed_labels(scan, extracted, images),
-                                                   options.min_plane_points, monitor);
+  const ExtractedFeatures more =
+      with_small_planes(scan, extracted, completed_labels(scan, extracted, images), kSmallPlane, monitor);
   images = images_of(scan, more.features.planes, more.labels, monitor);
   const Creases creases = find_creases(more.features, images, options, scan.size());
   std::vector<DetectedEdge> edges;

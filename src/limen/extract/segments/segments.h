@@ -30,11 +30,9 @@ struct SegmentOptions {
   double min_length_m = 0.2;          ///< of a segment, > 0
   double min_angle_deg = 12.0;        ///< between two planes that make an edge, in (0, 90]
   double join_gap_m = 0.15;           ///< pieces of one line are joined across gaps up to this, >= 0
-  int min_plane_points = 60;          ///< of small planes looked for among points without one; 0: none
   bool creases = true;                ///< where two planes meet
   bool borders = true;                ///< where a plane ends
   double max_border_sigma_m = 0.006;  ///< borders whose place is known less well are left out, > 0
-  double max_border_angle_deg = 0.6;  ///< borders whose direction is known less well, > 0
 
   void check() const;
 };

@@ -26,6 +26,9 @@ constexpr std::size_t kSlidingShifts = 5;  // shifts tried along each
 constexpr double kMaxSweepM = 25.0;        // either way
 constexpr double kSameShiftM = 0.15;       // poses nearer than this are one
 constexpr std::size_t kMostOfRotation = 4000;
+constexpr double kSameOffsetM = 0.06;  // planes nearer than this are taken for one
+constexpr int kShiftsPerAxis = 48;     // candidates per axis and rotation
+constexpr int kMostPlanes = 96;        // largest planes of each scan that are matched
 
 /// The planes with the largest areas, nothing else; those seen through openings first, for both scans share
 /// them.
@@ -43,8 +46,8 @@ Features largest_planes(const Features& features, int most) {
 class PoseEnumerator {
  public:
   PoseEnumerator(const Features& source, const Features& target, const PoseEnumerationOptions& options)
-      : source_(largest_planes(source, options.max_planes)),
-        target_(largest_planes(target, options.max_planes)),
+      : source_(largest_planes(source, kMostPlanes)),
+        target_(largest_planes(target, kMostPlanes)),
         options_(options) {
     source_axes_ = axis_directions(source_, options.direction_deg);
     target_axes_ = axis_directions(target_, options.direction_deg);
@@ -177,8 +180,8 @@ class PoseEnumerator {
     }
     std::stable_sort(along.pairs.begin(), along.pairs.end(),
                      [](const ShiftPair& a, const ShiftPair& b) { return a.shift < b.shift; });
-    along.index(options_.offset_tolerance_m);
-    along.shifts = best_shifts(along.pairs, options_.offset_tolerance_m, options_.max_shifts_per_axis);
+    along.index(kSameOffsetM);
+    along.shifts = best_shifts(along.pairs, kSameOffsetM, kShiftsPerAxis);
     for (const AxisShift& shift : along.shifts) along.weight_m2 += shift.limit_m2;
     return along;
   }
@@ -295,7 +298,7 @@ class PoseEnumerator {
       if (bound <= least) return 0.0;
     }
     for (const AxisPairs* axis : basis.others.list) {
-      const double here = axis->support(translation, options_.offset_tolerance_m);
+      const double here = axis->support(translation, kSameOffsetM);
       sum += here;
       bound += here - axis->most_near(axis->axis.direction.dot(translation));
       if (bound <= least) return 0.0;
@@ -343,7 +346,7 @@ class PoseEnumerator {
                                                             const LeastPrecedence& of_all) const {
     const Basis basis = make_basis(axes, basis_axes);
     const ShiftTriples triples(axes, {basis_axes[0], basis_axes[1], basis_axes[2]}, basis.others.most_m2,
-                               options_.offset_tolerance_m, of_all.value());
+                               kSameOffsetM, of_all.value());
     const std::size_t most =
         std::min<std::size_t>(kMostOfRotation, 2 * static_cast<std::size_t>(options_.max_poses));
     std::vector<PoseCandidate> poses;
@@ -378,9 +381,6 @@ void PoseEnumerationOptions::check() const {
     throw_bad_option("gravity_tolerance_deg", gravity_tolerance_deg, "more than 0");
   if (!(direction_deg > 0 && direction_deg < 45))
     throw_bad_option("direction_deg", direction_deg, "within (0, 45)");
-  if (!(offset_tolerance_m > 0)) throw_bad_option("offset_tolerance_m", offset_tolerance_m, "more than 0");
-  if (max_shifts_per_axis < 1) throw_bad_option("max_shifts_per_axis", max_shifts_per_axis, "1 or more");
-  if (max_planes < 1) throw_bad_option("max_planes", max_planes, "1 or more");
   if (max_poses < 1) throw_bad_option("max_poses", max_poses, "1 or more");
 }
 

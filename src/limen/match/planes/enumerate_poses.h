@@ -13,9 +13,6 @@ struct PoseEnumerationOptions {
   bool gravity_known = true;           ///< both z axes point up: only turns about the vertical are tried
   double gravity_tolerance_deg = 4.0;  ///< by how much a level scanner may be off
   double direction_deg = 5.0;          ///< normals nearer than this are one direction
-  double offset_tolerance_m = 0.06;    ///< planes nearer than this are taken for one
-  int max_shifts_per_axis = 48;        ///< candidates per axis and rotation
-  int max_planes = 96;                 ///< largest planes of each scan that are matched
   int max_poses = 3000;                ///< poses returned
 
   void check() const;

@@ -12,7 +12,8 @@
 namespace limen {
 namespace {
 
-constexpr double kMinAngleDeg = 25.0;  // two directions nearer than this fix no rotation
+constexpr double kMinAngleDeg = 25.0;          // two directions nearer than this fix no rotation
+constexpr std::ptrdiff_t kMostDirections = 8;  // heaviest directions used per scan
 
 /// The rotation that takes the frame of (a1, a2) to that of (b1, b2).
 Matrix3d rotation_of_pair(const Vector3d& a1, const Vector3d& a2, const Vector3d& b1, const Vector3d& b2) {
@@ -95,11 +96,11 @@ std::vector<Matrix3d> enumerate_rotations(const std::vector<AxisDirection>& sour
                                           const std::vector<AxisDirection>& target,
                                           const RotationOptions& options) {
   std::vector<AxisDirection> from(
-      source.begin(), source.begin() + std::min<std::ptrdiff_t>(options.max_directions,
-                                                                static_cast<std::ptrdiff_t>(source.size())));
+      source.begin(),
+      source.begin() + std::min<std::ptrdiff_t>(kMostDirections, static_cast<std::ptrdiff_t>(source.size())));
   std::vector<AxisDirection> to(
-      target.begin(), target.begin() + std::min<std::ptrdiff_t>(options.max_directions,
-                                                                static_cast<std::ptrdiff_t>(target.size())));
+      target.begin(),
+      target.begin() + std::min<std::ptrdiff_t>(kMostDirections, static_cast<std::ptrdiff_t>(target.size())));
   if (options.gravity_known) {
     // The vertical is a direction of both scans even where neither floor nor ceiling was seen.
     from.push_back({Vector3d::UnitZ(), 1.0});

@@ -19,7 +19,6 @@ struct RotationOptions {
   double gravity_tolerance_deg = 4.0;
   double direction_deg = 5.0;
   double same_rotation_deg = 3.0;  ///< rotations nearer than this are one
-  int max_directions = 8;          ///< heaviest directions used per scan
 };
 
 /// Directions of the planes' normals by weight (area), heaviest first; greedy, each refined as the main

@@ -19,7 +19,6 @@ struct ProjectOptions {
   RegisterOptions registering;
   ReadOptions reading;
   bool all_pairs = false;       ///< every pair is tried, however many there are
-  int pairs_per_scan = 12;      ///< else: as many per scan at most, on average
   bool stations_apart = false;  ///< scans of one file are not known to one another
   /// Scans of one file are where it has them with this deviation, and not to millimetres.
   std::optional<double> file_sigma_m = {};

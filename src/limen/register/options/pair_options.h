@@ -25,14 +25,11 @@ struct RefineOptions {
   double last_gate_m = 0.015;  ///< and in the last
   int rounds = 12;
   std::size_t samples = 0;             ///< of each scan that are used, about; 0: all
-  double flatness_m = 0.001;           ///< real walls are not flatter than this: least deviation of a tile
   double first_opening_gate_m = 0.25;  ///< openings nearer than this within their wall are matched at first
   double last_opening_gate_m = 0.06;   ///< and in the last round
-  double parallel_rad = 0.003;         ///< by how much the two faces of a wall may not be parallel, 1 sigma
   double wall_thickness_m = 0.0;       ///< of the outer walls, as the user knows it; 0: not known
-  double wall_thickness_sigma_m = 0.01;
-  bool planes = true;    ///< tiles of surface are matched
-  bool openings = true;  ///< openings are matched
+  bool planes = true;                  ///< tiles of surface are matched
+  bool openings = true;                ///< openings are matched
 
   void check() const;
 };

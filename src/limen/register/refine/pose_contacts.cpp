@@ -23,6 +23,9 @@ constexpr double kTurnGateRad = 0.15;
 constexpr double kOneWallCosine = 0.99;
 constexpr double kOneWallM = 0.3;
 constexpr double kOneColumnM = 0.15;
+constexpr double kFlatnessM = 0.001;       // real walls are not flatter than this: least deviation of a tile
+constexpr double kParallelRad = 0.003;     // by how much the two faces of a wall may not be parallel, 1 sigma
+constexpr double kThicknessSigmaM = 0.01;  // of a wall's thickness as the user knows it
 
 /// The planar samples that one scan is asked about, gathered.
 struct AskedSurface {
@@ -74,8 +77,7 @@ class ContactFinder::Collector {
 
  private:
   [[nodiscard]] double sigma_of(const SurfaceSample& sample, double noise_m) const {
-    return std::sqrt(noise_m * noise_m / static_cast<double>(sample.count) +
-                     options_.flatness_m * options_.flatness_m);
+    return std::sqrt(noise_m * noise_m / static_cast<double>(sample.count) + kFlatnessM * kFlatnessM);
   }
 
   void collect(const ScanView& scan, const ScanView& judge, const AskedSurface& fixed,
@@ -168,7 +170,7 @@ class ContactFinder::Collector {
         turned.cross(target_.features->planes[static_cast<std::size_t>(target.facade)].plane.normal);
     contact.turn = true;
     contact.gate_m = kTurnGateRad;
-    contact.sigma_m = options_.parallel_rad;
+    contact.sigma_m = kParallelRad;
     for (const Vector3d& axis : {match.across, match.up}) {
       contact.normal = axis;
       contact.residual_m = turn.dot(axis);
@@ -199,7 +201,7 @@ class ContactFinder::Collector {
                                        const OpeningMatch& match) const {
     if (!match.opposite) return {0.0, 0.005};
     Thickness best;
-    if (options_.wall_thickness_m > 0.0) best = {options_.wall_thickness_m, options_.wall_thickness_sigma_m};
+    if (options_.wall_thickness_m > 0.0) best = {options_.wall_thickness_m, kThicknessSigmaM};
     for (const Opening* opening : {&source, &target}) {
       if (!opening->reveal_complete || !(opening->reveal_depth_m > 0.0)) continue;
       const double sigma = std::max(opening->reveal_sigma_m, kLeastRevealSigmaM);

@@ -574,7 +574,6 @@ void RefineOptions::check() const {
   if (!(last_gate_m > 0)) throw_bad_option("last_gate_m", last_gate_m, "more than 0");
   if (!(first_gate_m >= last_gate_m)) throw_bad_option("first_gate_m", first_gate_m, "at least last_gate_m");
   if (rounds < 0) throw_bad_option("rounds", rounds, "0 or more");
-  if (!(flatness_m >= 0)) throw_bad_option("flatness_m", flatness_m, "0 or more");
 }
 
 Matrix6d covariance_of(const RefinedPose& pose) {

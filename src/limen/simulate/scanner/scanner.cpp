@@ -12,6 +12,10 @@
 namespace limen {
 namespace {
 
+constexpr double kLargestRangeM = 120.0;
+/// Reflectivity * cos(incidence) * (10 m / range)^2 that still gives an echo.
+constexpr double kLeastSignal = 2.5e-4;
+
 /// What became of one pulse: nothing, or a range on a surface.
 struct Return {
   double range_m = -1.0;
@@ -95,7 +99,7 @@ class LineScanner {
     double before = 0.0;  // the way to the pane that threw the ray back
     for (int step = 0; step < 12; ++step) {
       RayHit hit = caster_.cast(origin, direction, from);
-      if (!hit.found() || hit.inside || hit.range_m > o_.max_range_m) return {};
+      if (!hit.found() || hit.inside || hit.range_m > kLargestRangeM) return {};
       const Surface& surface = caster_.mesh().surfaces()[static_cast<std::size_t>(hit.surface)];
       const bool glass = surface.element == Element::glass;
       if (!glass && surface.element != Element::portal) {
@@ -127,7 +131,7 @@ class LineScanner {
     const double fall = 10.0 / hit.range_m;
     const double signal = surface.reflectivity * hit.cosine * fall * fall;
     // Speckle: an echo near the threshold comes back sometimes.
-    if (signal * (0.4 + 1.2 * random.uniform()) < o_.least_signal) return {};
+    if (signal * (0.4 + 1.2 * random.uniform()) < kLeastSignal) return {};
     return {hit.range_m, hit.cosine, hit.surface};
   }
 
@@ -186,7 +190,6 @@ void ScannerOptions::check() const {
   for (const double share :
        {mixed_pixel_share, loss_share, glass_return_share, glass_loss_share, glass_mirror_share})
     if (!(share >= 0.0 && share <= 1.0)) throw_bad_option("share", share, "between 0 and 1");
-  if (!(max_range_m > 0.1)) throw_bad_option("max_range_m", max_range_m, "above 0.1");
 }
 
 Sweep sweep(const RayCaster& caster, const std::vector<TrueOpening>& openings, const ScanPattern& pattern,

@@ -20,9 +20,6 @@ struct ScannerOptions {
   double glass_return_share = 0.05;  ///< of the rays on a pane that come back from it
   double glass_loss_share = 0.03;    ///< that come back from nowhere
   double glass_mirror_share = 0.0;   ///< that are thrown back as by a mirror, and end on what it shows
-  double max_range_m = 120.0;
-  /// Reflectivity * cos(incidence) * (10 m / range)^2 that still gives an echo.
-  double least_signal = 2.5e-4;
 
   void check() const;
 };
