@@ -7,12 +7,9 @@
 namespace limen {
 
 const char* to_string(LinkState state) {
-  static constexpr Named<LinkState> names[] = {{LinkState::verified, "verified"},
-                                               {LinkState::bridge, "bridge"},
-                                               {LinkState::ambiguous, "ambiguous"},
-                                               {LinkState::rejected, "rejected"},
-                                               {LinkState::weak, "weak"},
-                                               {LinkState::in_place, "in_place"}};
+  static constexpr Named<LinkState> names[] = {
+      {LinkState::verified, "verified"}, {LinkState::bridge, "bridge"}, {LinkState::ambiguous, "ambiguous"},
+      {LinkState::rejected, "rejected"}, {LinkState::weak, "weak"},     {LinkState::in_place, "in_place"}};
   return name_of(names, state);
 }
 

@@ -6,14 +6,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
-#include "limen/base/disjoint_sets.h"
 #include "limen/base/progress.h"
 #include "limen/geometry/cell_key.h"
 #include "limen/geometry/cell_lists.h"
+#include "limen/geometry/joined_points.h"
 #include "limen/geometry/polygon_clip.h"
 #include "limen/register/judge/built_planes.h"
 #include "limen/register/judge/common_surfaces.h"
@@ -79,23 +78,6 @@ double agreeing_share(const std::vector<Stated>& stated) {
     if (one.agrees) agreeing += one.weight;
   }
   return total > 0.0 ? agreeing / total : 0.0;
-}
-
-/// Sets of points that are connected: points nearer to one another than `nearer_m` are of one.
-DisjointSets joined_points(const std::vector<Vector3d>& points, double nearer_m) {
-  std::unordered_map<std::int64_t, std::vector<std::size_t>> cells;
-  DisjointSets sets(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vector3d cell = cell_of(points[i], nearer_m);
-    for (int k = 0; k < 27; ++k) {
-      const auto found = cells.find(cell_key(cell + way_to_cell(k)));
-      if (found == cells.end()) continue;
-      for (const std::size_t j : found->second)
-        if ((points[i] - points[j]).squaredNorm() < nearer_m * nearer_m) sets.join(i, j);
-    }
-    cells[cell_key(cell)].push_back(i);
-  }
-  return sets;
 }
 
 /// What is nearer than `kThingLengthM`, one by one, is of one thing. `shares`: of each answer, of an
