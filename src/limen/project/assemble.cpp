@@ -19,6 +19,7 @@
 #include "limen/project/solve/judge_decisions.h"
 #include "limen/project/solve/place_survey.h"
 #include "limen/project/solve/project_graph.h"
+#include "limen/project/solve/scans_in_feet.h"
 #include "limen/project/solve/straighten_links.h"
 #include "limen/project/solve/survey_points.h"
 #include "limen/project/state/scan_names.h"
@@ -60,6 +61,7 @@ class Assembler {
     for (std::size_t k = 0; k < graph_.links.size(); ++k) tell_link(k);
     for (std::size_t k = 0; k < graph_.measured_in_place.size(); ++k) tell_in_place(k);
     tell_moved();
+    tell_feet();
     state_look_alikes();
     tell_survey();
     result_.decisions =
@@ -452,6 +454,14 @@ class Assembler {
         "something was moved or rebuilt between scans, and their accuracy allows for either side: planes lie "
         "beside one another in " +
         pairs);
+  }
+
+  void tell_feet() {
+    for (const std::size_t n : scans_in_feet(nodes_, solved_))
+      result_.notes.push_back(fmt::format(
+          "the scanner of {} was 3.28 times as high above its floor as those of the placed scans: "
+          "its numbers seem to be feet; export it in metres",
+          name_of(static_cast<int>(n))));
   }
 
   /// The distances of a pair's planes under the poses of the solution; none of passes that were bent.
