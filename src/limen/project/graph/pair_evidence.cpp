@@ -97,7 +97,9 @@ PairEvidence evidence_of(const GraphLink& link, std::size_t pose) {
   };
   double best = 0.0;
   for (std::size_t k = 0; k < link.poses.size(); ++k) best = std::max(best, probability(k));
-  const double wrong = std::max(link.chance, kLeastProbability);
+  // If the best pose lays a place on a look-alike one, no other pose has anything in common but by chance.
+  const double nothing = link.chance + (static_cast<int>(pose) == link.best ? 0.0 : link.look_alike);
+  const double wrong = std::max(nothing, kLeastProbability);
   evidence.chance_nats = std::max(
       -kMostPairNats, std::min(kMostPairNats, std::log(best / wrong)) + std::log(probability(pose) / best));
   // Of several poses one agrees by chance so much sooner.

@@ -100,6 +100,25 @@ TEST(ProjectGraph, AlongWhatAPairCallsOpenItsDeviationIsNotBelieved) {
   EXPECT_LT((Matrix3d(covariance.topLeftCorner<3, 3>()).norm()), 1e-3);
 }
 
+/// Where the best pose lays a place on a look-alike one, the scans are elsewhere: another pose of theirs then
+/// agrees by chance.
+TEST(ProjectGraph, OtherPosesOfALookAlikePlaceSayLittle) {
+  RegistrationResult pair = stated(Outcome::ambiguous, 0.99);
+  pair.best.probability = 0.006;
+  pair.others->nothing_shared = 1e-5;
+  Hypothesis other = pair.best;
+  other.target_from_source.translation = {5.0, 0.0, 0.0};
+  other.probability = 0.003;
+  pair.alternatives.push_back(other);
+  const GraphLink link = links_of(pair).front();
+  ASSERT_EQ(link.poses.size(), 2U);
+  EXPECT_GT(evidence_of(link, 0).chance_nats, 5.0) << "by chance so much does not agree";
+  EXPECT_LT(evidence_of(link, 1).chance_nats, -5.0);
+  GraphLink sure = link;
+  sure.look_alike = 0.0;
+  EXPECT_GT(evidence_of(sure, 1).chance_nats, 5.0);
+}
+
 /// Of a pair that was measured from where the links place its scans.
 PoseGraph measured_in_place(const RegistrationResult& pair, double placed_sigma_m) {
   std::vector<ProjectNode> nodes(2);
