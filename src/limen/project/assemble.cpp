@@ -393,6 +393,12 @@ class Assembler {
     stated.target = static_cast<int>(nodes_[static_cast<std::size_t>(measured.target)].scan);
     stated.solved.state = LinkState::in_place;
     stated.solved.pose = 0;
+    const Vector6d missed = misfit(
+        measured.pose, inverse(solved_.nodes[static_cast<std::size_t>(measured.target)].frame_from_node) *
+                           solved_.nodes[static_cast<std::size_t>(measured.source)].frame_from_node);
+    stated.solved.loop_error_rad = missed.head<3>().norm();
+    stated.solved.loop_error_m = missed.tail<3>().norm();
+    stated.solved.chi_square = chi_square(missed, measured.pose.covariance);
     stated.target_from_source =
         to_world(measured.pose.target_from_source, source.local_origin, target.local_origin);
     stated.agreeing_m2 = measured.pose.agreeing_m2;

@@ -72,7 +72,8 @@ class Run {
     try_last(tried);
     engine_.reset();
     monitor_.begin_stage("adjustment");
-    result_.pairs_tried = tried.size();
+    result_.pairs_tried = static_cast<std::size_t>(
+        std::count_if(tried.begin(), tried.end(), [](const TriedPair& pair) { return !pair.placed; }));
     ScanCache queried(store_, kQueriedInMemory, names_of_keys(nodes_, result_.scans));
     const std::size_t noted = result_.notes.size();
     assemble(nodes_, tried, inputs_, words_, options_.registering.verdict,
@@ -85,7 +86,7 @@ class Run {
         scan.rigid = scan.mobile ? "treated as rigid, as you asked" : "";
     }
     status_.stage = "done";
-    // Some were tried twice: as scans that stand upright, and any way round.
+    // Some were tried twice: as scans that stand upright and any way round, or in their place.
     status_.pairs = status_.tried = result_.pairs_tried;
     write_status(folder_, status_);
     return std::move(result_);
@@ -363,7 +364,7 @@ class Run {
       made = make_graph(nodes_, tried, words_);
       solved = solve_graph(made.graph, risk());
     }
-    measure_in_place(loose_pairs(nodes_, made, solved), tried);
+    measure_in_place(loose_pairs(nodes_, made, words_, solved), tried);
   }
 
   /// Scans that seem to stand upright may not: those that nothing holds are tried once more, any way round.

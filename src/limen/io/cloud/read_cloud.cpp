@@ -3,6 +3,7 @@
 #include "limen/io/cloud/read_cloud.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <set>
@@ -11,9 +12,11 @@
 #include <fmt/format.h>
 
 #include "limen/base/error.h"
+#include "limen/base/random.h"
 #include "limen/base/text.h"
 #include "limen/io/cloud/thin_cloud.h"
 #include "limen/io/table/packed_rows.h"
+#include "limen/io/table/record_table.h"
 #include "limen/io/table/scan_builder.h"
 
 namespace limen {
@@ -100,24 +103,38 @@ void for_each_piece(const OpenPoints& input, std::size_t cloud, Reading& reading
   }
 }
 
-/// Every so many rows of a cloud that comes in pieces: as dense everywhere as it was measured, by a factor.
-class EveryFewRows {
+/// Some usable rows of a cloud that comes in pieces: as dense everywhere as it was measured, by a factor.
+/// They are drawn by lot, for rows may repeat in a rhythm.
+class RowsByLot {
  public:
-  explicit EveryFewRows(std::uint64_t expected) : step_(std::max<std::uint64_t>(1, expected / kEnough)) {}
+  explicit RowsByLot(std::uint64_t expected) : step_(std::max<std::uint64_t>(1, expected / kEnough)) {}
 
   void add(const RecordTable& piece) {
     rows_.require_columns(piece);
-    for (; next_ < piece.rows; next_ += step_) rows_.append(piece, next_);
+    for (; next_ < piece.rows; next_ += 1 + mix64(++drawn_) % (2 * step_ - 1)) {
+      if (is_usable(piece, next_)) rows_.append(piece, next_);
+    }
     next_ -= piece.rows;
   }
+  [[nodiscard]] bool empty() const { return rows_.size() == 0; }
   /// Points into this object.
   [[nodiscard]] RecordTable table() const { return rows_.view(); }
 
  private:
   static constexpr std::uint64_t kEnough = 200000;
 
+  [[nodiscard]] static bool is_usable(const RecordTable& piece, std::size_t row) {
+    for (const char* axis : {"x", "y", "z"}) {
+      double value = 0.0;
+      if (const Field* field = piece.find({axis})) load_numbers(piece, *field, {row, row + 1}, &value);
+      if (!(std::abs(value) < kLargestCoordinateM)) return false;
+    }
+    return true;
+  }
+
   PackedRows rows_;
   std::uint64_t step_;
+  std::uint64_t drawn_ = 0;
   std::uint64_t next_ = 0;  ///< row of the next piece
 };
 
@@ -179,7 +196,7 @@ ScanFile read_thinned(const OpenPoints& input, const ReadOptions& options, Monit
     const CloudFacts& facts = input.file().clouds()[k];
     if (facts.points == 0) continue;
     CloudThinner thinner(share_of(input, k, options.memory_bytes), facts.points);
-    EveryFewRows as_measured(facts.points);
+    RowsByLot as_measured(facts.points);
     for_each_piece(input, k, reading, [&](const RecordTable& piece) {
       thinner.add(piece);
       as_measured.add(piece);
@@ -192,8 +209,10 @@ ScanFile read_thinned(const OpenPoints& input, const ReadOptions& options, Monit
     // A grid of returns has a place for those that are missing.
     if (input.format() != PointFormat::ptx) file.unusable += thinned.unusable;
     const TableFacts unordered = without_order(facts.table);
-    const ScanFile some = with_scan({}, without_angles(as_measured.table()), unordered, options);
-    file = with_scan(std::move(file), without_angles(thinned.table), unordered, options, &some.scans.front());
+    ScanFile some;
+    if (!as_measured.empty()) some = with_scan({}, without_angles(as_measured.table()), unordered, options);
+    file = with_scan(std::move(file), without_angles(thinned.table), unordered, options,
+                     some.scans.empty() ? nullptr : &some.scans.front());
     file.scans.back().topology = {};
   }
   require_scans(file, input);
@@ -205,9 +224,9 @@ std::optional<Vector3d> settled_centre(const OpenPoints& input, std::size_t clou
   if (facts.table.centre_unknown) return {};
   if (facts.table.centre) return facts.table.offset + *facts.table.centre;
   Reading reading(input, monitor);
-  EveryFewRows some(facts.points);
+  RowsByLot some(facts.points);
   for_each_piece(input, cloud, reading, [&](const RecordTable& piece) { some.add(piece); });
-  if (some.table().rows == 0) return {};
+  if (some.empty()) return {};
   const ScanFile file = with_scan({}, without_angles(some.table()), without_order(facts.table), {});
   const Scan& scan = file.scans.front();
   if (!scan.centre_known() || scan.mobile()) return {};

@@ -248,5 +248,17 @@ TEST(ReadScan, ToThinACloudChangesNothingAboutItsScanner) {
   EXPECT_EQ(thinned.centre_source, PlaceSource::assumed);
 }
 
+/// Missing returns may come in a rhythm.
+TEST(ReadScan, EveryFifthPointMayBeMissingInALargeCloud) {
+  const TemporaryFolder folder;
+  std::string text = "ply\nformat ascii 1.0\nelement vertex 1000000\n" + kXyzFloat + "end_header\n";
+  for (int k = 0; k < 1000000; ++k)
+    text += k % 5 == 0 ? std::string("nan nan nan\n")
+                       : fmt::format("{} {} {}\n", k % 100, (k / 100) % 100, 1 + k / 10000);
+  ReadOptions options;
+  options.memory_bytes = 8000000;
+  EXPECT_GT(read_scan(folder.write("gaps.ply", text), options).size(), 1000U);
+}
+
 }  // namespace
 }  // namespace limen

@@ -23,7 +23,6 @@ constexpr std::size_t kThinnedPerPiece = 32768;
 constexpr std::size_t kThinnedStrip = 1024;
 /// Cells are at least this small where the spacing is not given.
 constexpr double kFinestCellM = 1e-3;
-constexpr double kLargestCoordinateM = 1e8;
 /// While the cloud comes in there may be so many times more cells than points are wanted: the last choice
 /// then comes close to the number.
 constexpr double kMoreCells = 2.2;

@@ -52,6 +52,9 @@ class CloudThinner {
   std::unique_ptr<Cells> cells_;
 };
 
+/// A coordinate beyond this is none: a missing return, or a broken export.
+constexpr double kLargestCoordinateM = 1e8;
+
 /// Rows per piece that readers are asked for: enough for all threads, little memory.
 constexpr std::size_t kStreamRows = std::size_t{1} << 20U;
 

@@ -210,6 +210,27 @@ TEST(TransformCloud, TextStatesWhereTheScannerIsThen) {
   EXPECT_LT((scan.local_origin + scan.centres[0] - Vector3d(652001, 6840002, 38)).norm(), 1e-6);
 }
 
+TEST(TransformCloud, AStatedScannerPositionIsReadWhereItIsMoved) {
+  const TemporaryFolder folder;
+  const Rigid3 motion{Matrix3d::Identity(), {100.0, 0.0, 0.0}};
+  transform_cloud(folder.write("bom.xyz", "\xEF\xBB\xBF// scanner_position 1 2 3\n1.5 2 3\n4 5 6\n"), motion,
+                  folder / "moved.xyz");
+  const Scan moved = read_scan(folder / "moved.xyz");
+  ASSERT_TRUE(moved.centre_known());
+  EXPECT_LT((moved.local_origin + moved.centres[0] - Vector3d(101, 2, 3)).norm(), 1e-6);
+  // Behind a count the lines are rows, or nothing.
+  const Scan counted = read_scan(folder.write("c.pts", "2\n// scanner_position 7 7 7\n1.5 2 3\n4 5 6\n"));
+  EXPECT_FALSE(counted.centre_known());
+}
+
+TEST(TransformCloud, AStationWithoutReturnsIsNoFault) {
+  const TemporaryFolder folder;
+  const std::string head = "2\n2\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 2 3 1\n";
+  const auto in = folder.write("two.ptx", head + "1 2 3 0.5\n2 2 3 0.5\n4 5 6 0.25\n-7 8 9 1\n" + head +
+                                              "0 0 0 0.5\n0 0 0 0.5\n0 0 0 0.5\n0 0 0 0.5\n");
+  EXPECT_EQ(transform_cloud(in, {}, folder / "out.e57").points, 8U);
+}
+
 TEST(TransformCloud, TextMovesTheColumnsThatAreNamed) {
   const TemporaryFolder folder;
   const auto in = folder.write("in.csv", "nx;ny;nz;id;x;y;z\n1;0;0;7;1;2;3\n");

@@ -64,9 +64,9 @@ struct TextHeader {
   std::size_t lines = 0;  ///< lines before it
   std::string_view odd_line;  ///< the first line that is no comment, no names, no numbers
   std::size_t odd_number = 0;
-  std::string_view row;          ///< the first row; empty where there is none
-  bool ended_by_return = false;  ///< which is not followed by a line feed
-  std::optional<Vector3d> centre;
+  std::string_view row;            ///< the first row; empty where there is none
+  bool ended_by_return = false;    ///< which is not followed by a line feed
+  std::optional<Vector3d> centre;  ///< of the scanner, as the first comment before the rows states it
 };
 
 bool is_comment(std::string_view line) {
@@ -103,7 +103,7 @@ TextHeader parse_text_header(std::string_view bytes) {
       header.names = names_for(numbers, lines_of_names);
       return header;
     }
-    if (const std::optional<Vector3d> centre = scanner_position_in(line.text)) header.centre = centre;
+    if (!header.centre && !first_row_found) header.centre = scanner_position_in(line.text);
     Names names = numbers == 0 ? column_names(line.text) : Names();
     if (!names.empty()) lines_of_names.push_back(std::move(names));
     if (numbers == 0 && lines_of_names.empty() && !is_comment(line.text) && header.odd_number == 0) {

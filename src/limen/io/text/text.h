@@ -45,8 +45,9 @@ class LineMover {
 TransformedCloud transform_text(const NamedBytes& input, const Rigid3& target_from_source,
                                 const std::filesystem::path& output);
 
-/// Where a comment line "// scanner_position X Y Z" has the scanner, and such a line.
+/// The position in a comment line "// scanner_position X Y Z"; nothing in any other line.
 std::optional<Vector3d> scanner_position_in(std::string_view line);
+/// Such a comment line, without its end.
 std::string scanner_position_line(const Vector3d& centre);
 
 /// True where the bytes are text whose first lines are rows of numbers (PTS, XYZ, CSV).

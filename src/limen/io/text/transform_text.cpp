@@ -20,6 +20,7 @@ constexpr std::size_t kPiecesAtOnce = 16;
 /// Digits behind the point: a tenth of a millimetre at least, and no more than a double has.
 constexpr int kLeastDecimals = 4;
 constexpr int kMostDecimals = 15;
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 std::string written_like(double value, std::string_view old) {
   const std::size_t point = old.find('.');
@@ -43,7 +44,8 @@ std::string_view take_piece(std::string_view& text) {
 
 /// The lines before the rows; a comment that states the scanner's position states the new one.
 std::string moved_head(std::string_view head, const Rigid3& target_from_source) {
-  std::string moved;
+  std::string moved(head.substr(0, kByteOrderMark.size()) == kByteOrderMark ? kByteOrderMark : "");
+  head.remove_prefix(moved.size());
   while (!head.empty()) {
     const std::string_view line = head.substr(0, std::min(head.find('\n'), head.size() - 1) + 1);
     head.remove_prefix(line.size());

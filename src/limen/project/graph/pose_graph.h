@@ -116,7 +116,7 @@ struct GraphLoop {
 struct SolvedGraph {
   std::vector<SolvedNode> nodes;
   std::vector<SolvedLink> links;
-  std::vector<bool> in_place;  ///< of each pose measured in place: the two nodes lie so
+  std::vector<bool> in_place;  ///< of each pose measured in place: the solution lays both nodes there
   std::vector<GraphLoop> loops;
   std::vector<GraphQuestion> questions;
   int components = 0;  ///< of two nodes or more

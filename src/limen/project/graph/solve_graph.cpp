@@ -384,7 +384,8 @@ class Solver {
     judge_references();
   }
 
-  /// What lends its component the frame lies in one with others as surely as the surest of them does.
+  /// The node that lends its component the frame has no doubt of its own: it gets the state and the doubt of
+  /// the surest other node.
   void judge_references() {
     const auto unsure = [](const SolvedNode& node) {
       return std::tuple(node.state == NodeState::ambiguous, node.state, node.doubt);

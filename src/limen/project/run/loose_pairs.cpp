@@ -30,7 +30,7 @@ bool may_be_measured(const ProjectNode& node, const SolvedNode& solved) {
 }  // namespace
 
 std::vector<LoosePair> loose_pairs(const std::vector<ProjectNode>& nodes, const ProjectGraph& made,
-                                   const SolvedGraph& solved) {
+                                   const UserWords& words, const SolvedGraph& solved) {
   std::set<std::pair<int, int>> linked;
   for (std::size_t k = 0; k < made.graph.links.size(); ++k) {
     const GraphLink& link = made.graph.links[k];
@@ -50,7 +50,8 @@ std::vector<LoosePair> loose_pairs(const std::vector<ProjectNode>& nodes, const 
       if (a.component != b.component || !may_be_measured(nodes[i], a) || !may_be_measured(nodes[j], b))
         continue;
       if (std::max(least_known_m(a.covariance), least_known_m(b.covariance)) < loose) continue;
-      if (linked.count({pair.second, pair.first}) > 0 || !boxes[i].intersects(boxes[j])) continue;
+      if (linked.count({pair.second, pair.first}) > 0 || words.pairs.count({i, j}) > 0) continue;
+      if (!boxes[i].intersects(boxes[j])) continue;
       const double common =
           predicted_overlap(nodes[i].digest, nodes[j].digest, inverse(b.frame_from_node) * a.frame_from_node);
       if (common >= kLeastCommonM2) wishes.emplace_back(-common, pair);

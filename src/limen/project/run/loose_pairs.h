@@ -7,6 +7,7 @@
 #include "limen/project/graph/link_pose.h"
 #include "limen/project/solve/project_graph.h"
 #include "limen/project/state/project_node.h"
+#include "limen/project/state/words.h"
 
 namespace limen {
 
@@ -17,10 +18,10 @@ struct LoosePair {
   LinkPose placed;  ///< where the links have them
 };
 
-/// Pairs of static scans whose place is sure, which no link joins and which should see enough of one
-/// another: the few of each loosely held scan that should see most. Measured once more from where they are,
-/// they say how exactly. By nodes.
+/// Pairs of static scans whose place is sure, which no link joins, of which a user said nothing, and which
+/// should see enough of one another: the few of each loosely held scan that should see most. Measured once
+/// more from where they are, they say how exactly. By nodes.
 std::vector<LoosePair> loose_pairs(const std::vector<ProjectNode>& nodes, const ProjectGraph& made,
-                                   const SolvedGraph& solved);
+                                   const UserWords& words, const SolvedGraph& solved);
 
 }  // namespace limen

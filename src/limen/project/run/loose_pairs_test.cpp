@@ -47,8 +47,8 @@ struct LooselyJoined {
     }
   }
 
-  [[nodiscard]] std::vector<LoosePair> loose() const {
-    return loose_pairs(nodes, made, solve_graph(made.graph));
+  [[nodiscard]] std::vector<LoosePair> loose(const UserWords& words = {}) const {
+    return loose_pairs(nodes, made, words, solve_graph(made.graph));
   }
 };
 
@@ -72,6 +72,12 @@ TEST(LoosePairs, SeeSomethingOfOneAnother) {
   row.nodes[2].digest.planes.front().plane.offset = -3.0;
   row.nodes[2].digest.planes.front().centroid.z() = -3.0;
   EXPECT_TRUE(row.loose().empty());
+}
+
+TEST(LoosePairs, AreNoneThatAUserRejected) {
+  UserWords words;
+  words.pairs[{2, 0}] = {DecisionKind::reject, 0};
+  EXPECT_TRUE(LooselyJoined(0.1).loose(words).empty());
 }
 
 TEST(LoosePairs, AreOfStaticScans) {

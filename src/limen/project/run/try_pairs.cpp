@@ -91,7 +91,8 @@ std::vector<std::string> made_elsewhere(const std::vector<std::pair<std::size_t,
   std::vector<Job> jobs;
   std::vector<std::size_t> places;
   for (std::size_t k = 0; k < keys.size(); ++k) {
-    // Few pairs have points shown: they are made here, and workers need not know of them.
+    // Few pairs have a start, by a user or by the other links: they are made here, and workers need not know
+    // of starts.
     if (keys[k].start || work.store.has_pair(keys[k].source, keys[k].target_name(), keys[k].counts)) continue;
     const auto name = [&](std::size_t node) { return scan_name(work.scans[work.nodes[node].scan]); };
     jobs.push_back(pair_job(work.folder, name(pairs[k].first) + " and " + name(pairs[k].second), keys[k]));

@@ -112,7 +112,8 @@ class DecisionJudge {
     stated.reason = "the pair has no link";
     for (const TriedPair& pair : all_.pairs) {
       const std::pair own(static_cast<int>(pair.target), static_cast<int>(pair.source));
-      if (own != std::pair(std::min(nodes[0], nodes[1]), std::max(nodes[0], nodes[1]))) continue;
+      if (pair.placed || own != std::pair(std::min(nodes[0], nodes[1]), std::max(nodes[0], nodes[1])))
+        continue;
       if (!makes_link(pair.result, true)) return;
       stated.state = DecisionState::kept;
       stated.reason = {};

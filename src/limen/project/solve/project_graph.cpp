@@ -131,6 +131,15 @@ class GraphMaker {
     }
   }
 
+  /// Whether a measured pose says something of the shift that was known least.
+  [[nodiscard]] static bool knows_more(const Matrix6d& measured, const Matrix6d& before) {
+    constexpr double kLeastShare = 0.1;  // of what was known
+    const Spectrum3 shifts = spectrum_of(Matrix3d(before.bottomRightCorner<3, 3>()));
+    const Vector3d loosest = shifts.vectors.col(2);
+    const Matrix3d information = inverse_of(measured).bottomRightCorner<3, 3>();
+    return loosest.dot(information * loosest) * shifts.values[2] > kLeastShare;
+  }
+
   /// What a pair says of how exactly its scans lie where the links place them, if it found them there. As far
   /// as it may be wrong, they are known no better than before.
   void add_measured_in_place(std::size_t k) {
@@ -148,6 +157,7 @@ class GraphMaker {
     const Matrix6d around = moved_covariance(placed, Rigid3{}, pose.centre);
     if (chi_square(misfit(pose, placed.target_from_source), pose.covariance + around) > kChiSquareBound)
       return;
+    if (!knows_more(pose.covariance, around)) return;
     pose.covariance += wrong * around;
     graph_.measured_in_place.push_back({link.source, link.target, pose});
     pair_in_place_.push_back(static_cast<int>(k));

@@ -153,7 +153,7 @@ std::vector<ProjectPoses> read_project_poses(const std::filesystem::path& path) 
     std::vector<ProjectPoses> all;
     for (const Json& link : json["links"]) {
       const Json& others = link.at("alternatives");
-      if (link.at("state") == "rejected" && others.empty()) continue;
+      if (link.at("state") == "in_place" || (link.at("state") == "rejected" && others.empty())) continue;
       ProjectPoses poses{link.at("source").get<std::size_t>(),
                          link.at("target").get<std::size_t>(),
                          {link.at("pose_number").get<int>()}};

@@ -27,6 +27,7 @@ std::optional<StationAccuracy> accuracy_of(const ProjectResult& result, std::siz
 inline bool is_checked(const ProjectLink& link) {
   constexpr double kNothing = 1e-6;
   if (link.solved.state == LinkState::bridge) return false;
+  if (link.solved.state == LinkState::in_place) return true;
   if (link.solved.pose < 0 && link.solved.state != LinkState::verified) return link.solved.loop_error_m > 0.0;
   return link.solved.state == LinkState::verified || link.solved.redundancy > kNothing;
 }
