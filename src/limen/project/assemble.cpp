@@ -393,18 +393,17 @@ class Assembler {
     stated.target = static_cast<int>(nodes_[static_cast<std::size_t>(measured.target)].scan);
     stated.solved.state = LinkState::in_place;
     stated.solved.pose = 0;
-    const Vector6d missed = misfit(
-        measured.pose, inverse(solved_.nodes[static_cast<std::size_t>(measured.target)].frame_from_node) *
-                           solved_.nodes[static_cast<std::size_t>(measured.source)].frame_from_node);
-    stated.solved.loop_error_rad = missed.head<3>().norm();
-    stated.solved.loop_error_m = missed.tail<3>().norm();
-    stated.solved.chi_square = chi_square(missed, measured.pose.covariance);
+    const auto frame_from = [&](int node) -> const Rigid3& {
+      return solved_.nodes[static_cast<std::size_t>(node)].frame_from_node;
+    };
+    take_misfit(measured.pose, inverse(frame_from(measured.target)) * frame_from(measured.source),
+                stated.solved);
     stated.target_from_source =
         to_world(measured.pose.target_from_source, source.local_origin, target.local_origin);
     stated.agreeing_m2 = measured.pose.agreeing_m2;
     stated.sigma = sigma_of(measured.pose, target);
     stated.look_alike = pair.others ? pair.others->look_alike : 0.0;
-    stated.chance = 1.0 - measured.pose.probability - stated.look_alike;
+    stated.chance = std::max(0.0, 1.0 - measured.pose.probability - stated.look_alike);
     stated.pair = pair.outcome;
     stated.matches = pair.matches;
     stated.openings = pair.openings;

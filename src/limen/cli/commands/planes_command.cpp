@@ -84,7 +84,7 @@ void add_planes_command(CommandLine& app, Session& session) {
       ->add_option("--detector", options->detector,
                    "How planes are found (default auto, which is grow); scan_lines needs a scan whose lines "
                    "are known; msac is slow")
-      ->one_of({"auto", "grow", "msac", "scan_lines"});
+      ->one_of(names_in(kPlaneDetectors));
   command->add_option("--threshold-m,--inlier-threshold-m METRES|RULE", options->threshold,
                       "Largest distance of a point from its plane: metres, or a rule: auto (default), noise, "
                       "a_contrario; 0 is auto");

@@ -22,8 +22,8 @@ enum class PlaneDetector {
 /// Those that are for users.
 inline constexpr Named<PlaneDetector> kPlaneDetectors[] = {{PlaneDetector::automatic, "auto"},
                                                            {PlaneDetector::grow, "grow"},
-                                                           {PlaneDetector::scan_lines, "scan_lines"},
-                                                           {PlaneDetector::msac, "msac"}};
+                                                           {PlaneDetector::msac, "msac"},
+                                                           {PlaneDetector::scan_lines, "scan_lines"}};
 
 /// Where the inlier threshold comes from when GrowOptions::inlier_threshold_m is 0.
 enum class ThresholdRule {

@@ -11,8 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "limen/base/drawn_steps.h"
 #include "limen/base/error.h"
-#include "limen/base/random.h"
 #include "limen/base/text.h"
 #include "limen/io/cloud/thin_cloud.h"
 #include "limen/io/table/packed_rows.h"
@@ -107,14 +107,13 @@ void for_each_piece(const OpenPoints& input, std::size_t cloud, Reading& reading
 /// They are drawn by lot, for rows may repeat in a rhythm.
 class RowsByLot {
  public:
-  explicit RowsByLot(std::uint64_t expected) : step_(std::max<std::uint64_t>(1, expected / kEnough)) {}
+  explicit RowsByLot(std::uint64_t expected) : expected_(std::max(expected, kEnough)) {}
 
   void add(const RecordTable& piece) {
     rows_.require_columns(piece);
-    for (; next_ < piece.rows; next_ += 1 + mix64(++drawn_) % (2 * step_ - 1)) {
-      if (is_usable(piece, next_)) rows_.append(piece, next_);
-    }
-    next_ -= piece.rows;
+    for_drawn_steps(piece.rows, piece.rows * kEnough / expected_, [&](std::size_t row) {
+      if (is_usable(piece, row)) rows_.append(piece, row);
+    });
   }
   [[nodiscard]] bool empty() const { return rows_.size() == 0; }
   /// Points into this object.
@@ -133,9 +132,7 @@ class RowsByLot {
   }
 
   PackedRows rows_;
-  std::uint64_t step_;
-  std::uint64_t drawn_ = 0;
-  std::uint64_t next_ = 0;  ///< row of the next piece
+  std::uint64_t expected_;
 };
 
 /// What a file says of a cloud still holds for some of its points, but not their order.

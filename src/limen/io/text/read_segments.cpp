@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limen/base/error.h"
+#include "limen/base/text.h"
 #include "limen/files/bounded_json.h"
 #include "limen/files/mapped_file.h"
 #include "limen/files/text_numbers.h"
@@ -70,13 +71,9 @@ bool is_letter_line(const std::vector<std::string_view>& tokens) {
   return (tokens[0] == "O" && tokens.size() >= 2) || (tokens[0] == "L" && tokens.size() >= 7);
 }
 
-std::string_view without_mark(std::string_view text) {
-  return text.substr(0, 3) == "\xEF\xBB\xBF" ? text.substr(3) : text;
-}
-
 /// The form of a text by its first lines that say something.
 Form form_of(std::string_view text) {
-  text = without_mark(text);
+  text = without_byte_order_mark(text);
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   if (start == std::string_view::npos) return Form::unknown;
   if (text[start] == '{') {
@@ -103,7 +100,7 @@ Form form_of(std::string_view text) {
 
 std::vector<Segment> from_text(std::string_view text, Form form, const std::string& name) {
   std::vector<Segment> segments;
-  text = without_mark(text);
+  text = without_byte_order_mark(text);
   for (std::size_t number = 1; !text.empty(); ++number) {
     const TextLine line = first_line(text);
     text.remove_prefix(line.bytes);
@@ -166,7 +163,7 @@ std::vector<Segment> from_openings(const json& list, const std::string& name) {
 }
 
 std::vector<Segment> from_json(std::string_view text, const std::string& name) {
-  text = without_mark(text);
+  text = without_byte_order_mark(text);
   json object;
   try {
     object = parsed_json<json>(text);

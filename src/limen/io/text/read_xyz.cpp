@@ -85,7 +85,7 @@ Names names_for(std::size_t numbers, const std::vector<Names>& lines) {
 TextHeader parse_text_header(std::string_view bytes) {
   TextHeader header;
   std::vector<Names> lines_of_names;
-  std::size_t at = bytes.substr(0, 3) == "\xEF\xBB\xBF" ? 3 : 0;
+  std::size_t at = bytes.size() - without_byte_order_mark(bytes).size();
   bool first_row_found = false;
   for (std::size_t line_number = 1; at < bytes.size() && line_number < kMostHeaderLines; ++line_number) {
     const TextLine line = first_line(bytes.substr(at));

@@ -9,6 +9,7 @@
 #include "limen/base/atomic_file.h"
 #include "limen/base/error.h"
 #include "limen/base/parallel.h"
+#include "limen/base/text.h"
 #include "limen/files/text_numbers.h"
 #include "limen/io/text/text.h"
 
@@ -20,7 +21,6 @@ constexpr std::size_t kPiecesAtOnce = 16;
 /// Digits behind the point: a tenth of a millimetre at least, and no more than a double has.
 constexpr int kLeastDecimals = 4;
 constexpr int kMostDecimals = 15;
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 std::string written_like(double value, std::string_view old) {
   const std::size_t point = old.find('.');
@@ -44,18 +44,14 @@ std::string_view take_piece(std::string_view& text) {
 
 /// The lines before the rows; a comment that states the scanner's position states the new one.
 std::string moved_head(std::string_view head, const Rigid3& target_from_source) {
-  std::string moved(head.substr(0, kByteOrderMark.size()) == kByteOrderMark ? kByteOrderMark : "");
-  head.remove_prefix(moved.size());
-  while (!head.empty()) {
-    const std::string_view line = head.substr(0, std::min(head.find('\n'), head.size() - 1) + 1);
-    head.remove_prefix(line.size());
-    const std::string_view words = line.substr(0, line.find_first_of("\r\n"));
-    if (const std::optional<Vector3d> centre = scanner_position_in(words)) {
-      moved += scanner_position_line(target_from_source * *centre);
-      moved += line.substr(words.size());
-    } else {
-      moved += line;
-    }
+  const std::string_view lines = without_byte_order_mark(head);
+  std::string moved(head.substr(0, head.size() - lines.size()));
+  for (std::string_view rest = lines; !rest.empty();) {
+    const TextLine line = first_line(rest);
+    const std::optional<Vector3d> centre = scanner_position_in(line.text);
+    moved += centre ? scanner_position_line(target_from_source * *centre) : std::string(line.text);
+    moved += rest.substr(line.text.size(), line.bytes - line.text.size());
+    rest.remove_prefix(line.bytes);
   }
   return moved;
 }

@@ -153,8 +153,7 @@ struct TrajectoryText {
 };
 
 TrajectoryText text_of(std::string_view bytes, const TrajectoryOptions& options, const std::string& name) {
-  TrajectoryText text{bytes, 1, {}};
-  if (text.rows.substr(0, 3) == "\xEF\xBB\xBF") text.rows.remove_prefix(3);
+  TrajectoryText text{without_byte_order_mark(bytes), 1, {}};
   while (!text.rows.empty() && !is_row(first_line(text.rows).text)) {
     const TextLine line = first_line(text.rows);
     if (text.names.empty()) text.names = names_in(line.text);

@@ -188,26 +188,23 @@ void accept(const PoseGraph& graph, const LinkMatcher& matcher, double gate, Con
   }
 }
 
-/// Poses by least squares over what agrees, about the first node of each component; `asked` are edges whose
-/// adjusted pose is asked for, and that hold nothing.
-PoseAdjustment adjusted(const PoseGraph& graph, const Configuration& configuration,
-                        const std::vector<PoseEdge>& asked, const PoseAdjustmentOptions& options) {
-  std::vector<PoseEdge> edges;
-  for (std::size_t k = 0; k < graph.links.size(); ++k) {
-    if (configuration.pose[k] < 0) continue;
-    const GraphLink& link = graph.links[k];
-    edges.push_back({link.source, link.target, link.poses[static_cast<std::size_t>(configuration.pose[k])]});
-  }
-  edges.insert(edges.end(), asked.begin(), asked.end());
-  std::vector<bool> fixed(configuration.component.size());
-  for (std::size_t n = 0; n < fixed.size(); ++n) fixed[n] = configuration.component[n] == static_cast<int>(n);
-  return adjust_poses(configuration.frame_from_node, fixed, edges, options);
+/// The first node of each component.
+std::vector<bool> first_nodes(const Configuration& configuration) {
+  std::vector<bool> first(configuration.component.size());
+  for (std::size_t n = 0; n < first.size(); ++n) first[n] = configuration.component[n] == static_cast<int>(n);
+  return first;
+}
+
+/// Least squares over what agrees.
+void adjust(const PoseGraph& graph, const PoseAdjustmentOptions& options, Configuration& configuration) {
+  configuration.frame_from_node = adjust_poses(configuration.frame_from_node, first_nodes(configuration),
+                                               edges_of(graph, configuration.pose), options)
+                                      .frame_from_node;
 }
 
 /// Links that miss by no more than the configuration itself is open there agree too: each would have, had it
 /// come first. Whether there are any.
 bool accept_where_open(const PoseGraph& graph, const LinkMatcher& matcher, Configuration& configuration) {
-  constexpr double kHoldsNothing = 1e6;  // variance
   std::vector<PoseEdge> asked;
   std::vector<std::pair<std::size_t, std::size_t>> poses;
   for (std::size_t k = 0; k < graph.links.size(); ++k) {
@@ -215,22 +212,20 @@ bool accept_where_open(const PoseGraph& graph, const LinkMatcher& matcher, Confi
     if (configuration.pose[k] >= 0 || !configuration.joins(link)) continue;
     for (std::size_t p = 0; p < link.poses.size(); ++p) {
       if (matcher.is_left_out(k, p)) continue;
-      const Vector6d missed = misfit(link.poses[p], configuration.target_from_source(link));
-      if (missed.head<3>().norm() > kOtherPlaceRad || missed.tail<3>().norm() > kOtherPlaceM) continue;
+      if (!is_one_place(misfit(link.poses[p], configuration.target_from_source(link)))) continue;
       poses.emplace_back(k, p);
       asked.push_back({link.source, link.target, link.poses[p]});
-      asked.back().pose.covariance = kHoldsNothing * Matrix6d::Identity();
     }
   }
   if (asked.empty()) return false;
-  const PoseAdjustment known = adjusted(graph, configuration, asked, {false, true});
-  const std::size_t first = known.edge_covariance.size() - asked.size();
+  const std::vector<Matrix6d> known = covariances_of(
+      configuration.frame_from_node, first_nodes(configuration), edges_of(graph, configuration.pose), asked);
   std::map<std::size_t, double> nearest;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const auto& [k, p] = poses[i];
     const LinkPose& pose = graph.links[k].poses[p];
     const double squared = chi_square(misfit(pose, configuration.target_from_source(graph.links[k])),
-                                      pose.covariance + known.edge_covariance[first + i]);
+                                      pose.covariance + known[i]);
     const auto before = nearest.find(k);
     if (squared > (before == nearest.end() ? kChiSquareBound : before->second)) continue;
     nearest[k] = squared;
@@ -249,12 +244,12 @@ void settle(const PoseGraph& graph, const LinkMatcher& matcher, Configuration& c
     find_components(graph, configuration);
     if (configuration.pose == before) continue;
     before = configuration.pose;
-    configuration.frame_from_node = adjusted(graph, configuration, {}, {}).frame_from_node;
+    adjust(graph, {}, configuration);
   }
   accept(graph, matcher, 1.0, configuration);
   find_components(graph, configuration);
   for (int k = 0; k < kMostReopened && accept_where_open(graph, matcher, configuration); ++k) {
-    configuration.frame_from_node = adjusted(graph, configuration, {}, {false}).frame_from_node;
+    adjust(graph, {false}, configuration);
     accept(graph, matcher, 1.0, configuration);
     find_components(graph, configuration);
   }

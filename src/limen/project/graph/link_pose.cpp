@@ -34,6 +34,10 @@ Vector6d misfit(const LinkPose& measured, const Rigid3& predicted) {
   return e;
 }
 
+bool is_one_place(const Vector6d& misfit) {
+  return misfit.head<3>().norm() <= kOtherPlaceRad && misfit.tail<3>().norm() <= kOtherPlaceM;
+}
+
 /// By a Cholesky factor on the stack: solving a graph asks for this millions of times.
 double chi_square(const Vector6d& misfit, const Matrix6d& covariance) {
   Matrix6d lower;

@@ -34,6 +34,9 @@ Matrix6d moved_covariance(const LinkPose& pose, const Rigid3& b_from_target, con
 /// axes.
 Vector6d misfit(const LinkPose& measured, const Rigid3& predicted);
 
+/// Whether a misfit is so small that it leads to no other place.
+bool is_one_place(const Vector6d& misfit);
+
 /// Squared length of a misfit in standard deviations.
 double chi_square(const Vector6d& misfit, const Matrix6d& covariance);
 

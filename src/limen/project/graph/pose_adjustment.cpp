@@ -148,4 +148,16 @@ PoseAdjustment adjust_poses(const std::vector<Rigid3>& start, const std::vector<
   return result;
 }
 
+std::vector<Matrix6d> covariances_of(const std::vector<Rigid3>& start, const std::vector<bool>& fixed,
+                                     std::vector<PoseEdge> edges, const std::vector<PoseEdge>& asked) {
+  constexpr double kHoldsNothing = 1e6;  // variance
+  const auto first = static_cast<std::ptrdiff_t>(edges.size());
+  for (const PoseEdge& edge : asked) {
+    edges.push_back(edge);
+    edges.back().pose.covariance = kHoldsNothing * Matrix6d::Identity();
+  }
+  const PoseAdjustment adjusted = adjust_poses(start, fixed, edges, {false, true});
+  return {adjusted.edge_covariance.begin() + first, adjusted.edge_covariance.end()};
+}
+
 }  // namespace limen

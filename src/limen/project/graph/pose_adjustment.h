@@ -52,4 +52,10 @@ struct PoseAdjustmentOptions {
 PoseAdjustment adjust_poses(const std::vector<Rigid3>& start, const std::vector<bool>& fixed,
                             const std::vector<PoseEdge>& edges, const PoseAdjustmentOptions& options = {});
 
+/// How well an adjustment by `edges` knows other poses: covariances of the adjusted poses of the `asked`
+/// pairs of nodes, about the centres of their poses, as in LinkPose. What they are `asked` with holds
+/// nothing.
+std::vector<Matrix6d> covariances_of(const std::vector<Rigid3>& start, const std::vector<bool>& fixed,
+                                     std::vector<PoseEdge> edges, const std::vector<PoseEdge>& asked);
+
 }  // namespace limen

@@ -53,6 +53,9 @@ struct PoseGraph {
   std::vector<PoseEdge> measured_in_place;
 };
 
+/// The links of which a pose is accepted, as edges; `pose_of_link`: which one, -1: none.
+std::vector<PoseEdge> edges_of(const PoseGraph& graph, const std::vector<int>& pose_of_link);
+
 /// What became of a link.
 enum class LinkState {
   verified,   ///< at least one loop that it is part of closes
@@ -72,6 +75,9 @@ struct SolvedLink {
   double chi_square = 0.0;      ///< the same in standard deviations, squared; 6 freedoms
   double redundancy = 0.0;      ///< share of the link's six numbers that the others check, 0 .. 6
 };
+
+/// By what a measured pose misses the one of the solution.
+void take_misfit(const LinkPose& measured, const Rigid3& target_from_source, SolvedLink& solved);
 
 enum class NodeState {
   registered,

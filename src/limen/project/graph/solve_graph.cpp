@@ -151,9 +151,8 @@ class Solver {
     const std::vector<LinkPose>& poses = graph_.links[link].poses;
     const Rigid3 place = best_.target_from_source(graph_.links[link]);
     for (std::size_t p = 0; p < poses.size(); ++p) {
-      const Vector6d missed = misfit(poses[p], place);
-      const bool near = missed.head<3>().norm() <= kOtherPlaceRad && missed.tail<3>().norm() <= kOtherPlaceM;
-      if (near || best_.pose[link] == static_cast<int>(p)) matcher_.leave_out(link, static_cast<int>(p));
+      if (is_one_place(misfit(poses[p], place)) || best_.pose[link] == static_cast<int>(p))
+        matcher_.leave_out(link, static_cast<int>(p));
     }
     best_.pose[link] = -1;
   }
@@ -167,14 +166,12 @@ class Solver {
 
   /// Last least squares, about the references, with covariances.
   void adjust() {
-    std::vector<PoseEdge> edges;
-    std::vector<PoseEdge> firm;  // a loop through a link that leaves a direction free checks little
-    for (std::size_t k = 0; k < graph_.links.size(); ++k) {
+    std::vector<PoseEdge> edges = edges_of(graph_, best_.pose);
+    std::vector<PoseEdge> firm = edges;  // a loop through a link that leaves a direction free checks little
+    for (std::size_t k = 0, edge = 0; k < graph_.links.size(); ++k) {
       if (best_.pose[k] < 0) continue;
-      const GraphLink& link = graph_.links[k];
-      edges.push_back({link.source, link.target, link.poses[static_cast<std::size_t>(best_.pose[k])]});
-      firm.push_back(edges.back());
-      if (link.trust == LinkTrust::weak) firm.back().target = firm.back().source;
+      if (graph_.links[k].trust == LinkTrust::weak) firm[edge].target = firm[edge].source;
+      ++edge;
     }
     solved_.in_place.clear();
     for (const PoseEdge& measured : graph_.measured_in_place) {
@@ -198,9 +195,8 @@ class Solver {
 
   /// Whether the configuration lays two nodes where they were measured, or so near that it is no other place.
   [[nodiscard]] bool lies_so(const PoseEdge& measured) const {
-    if (component(measured.source) != component(measured.target)) return false;
-    const Vector6d missed = misfit(measured.pose, inverse(at(measured.target)) * at(measured.source));
-    return missed.head<3>().norm() <= kOtherPlaceRad && missed.tail<3>().norm() <= kOtherPlaceM;
+    return component(measured.source) == component(measured.target) &&
+           is_one_place(misfit(measured.pose, inverse(at(measured.target)) * at(measured.source)));
   }
 
   [[nodiscard]] bool is_held(std::size_t node) const {
@@ -449,10 +445,7 @@ class Solver {
       const bool questioned = questioned_.count(static_cast<int>(k)) > 0;
       if (joined) {
         const LinkPose& pose = link.poses[static_cast<std::size_t>(std::max(0, solved.pose))];
-        const Vector6d missed = misfit(pose, best_.target_from_source(link));
-        solved.loop_error_rad = missed.head<3>().norm();
-        solved.loop_error_m = missed.tail<3>().norm();
-        solved.chi_square = chi_square(missed, pose.covariance);
+        take_misfit(pose, best_.target_from_source(link), solved);
       }
       if (solved.pose < 0) {
         solved.state = link.trust == LinkTrust::weak ? LinkState::weak

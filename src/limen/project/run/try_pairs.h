@@ -15,6 +15,7 @@
 #include "limen/project/run/store_jobs.h"
 #include "limen/project/state/project_node.h"
 #include "limen/project/state/project_status.h"
+#include "limen/project/state/words.h"
 #include "limen/project/store/store.h"
 #include "limen/register/register.h"
 
@@ -33,9 +34,6 @@ enum class PairSearch {
 /// Whether the two ways to search differ: both scans seem to stand upright, one of them not surely, and
 /// nobody said so.
 bool seem_level(const ProjectNode& source, const ProjectNode& target, const RegisterOptions& options);
-
-/// What is believed of pairs beforehand; source > target.
-using PairStarts = std::map<std::pair<std::size_t, std::size_t>, StartPrior>;
 
 /// Where and how pairs are registered.
 struct PairWork {

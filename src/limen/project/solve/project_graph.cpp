@@ -108,27 +108,30 @@ class GraphMaker {
     const bool spoken = said != words_.pairs.end();
     if (spoken && said->second.kind == DecisionKind::reject) return;
     if (!makes_link(found, spoken)) return;
-    GraphLink link;
-    link.source = static_cast<int>(pairs_[k].source);
-    link.target = static_cast<int>(pairs_[k].target);
+    GraphLink link = with_poses(pairs_[k]);
     link.trust = trust_of(found);
     link.look_alike = look_alike;
     link.chance = found.others ? by_chance(found) : kOfUnknown;
-    link.poses.push_back(pose_of(link, found, found.best, 1.0));
-    add_alternatives(found, link);
     if (words_.floors.count({pairs_[k].source, pairs_[k].target}) > 0) keep_floor(link);
     if (spoken) heed(said->second, link);
     graph_.links.push_back(std::move(link));
     pair_of_.push_back(static_cast<int>(k));
   }
 
-  void add_alternatives(const RegistrationResult& found, GraphLink& link) const {
+  /// The poses that a pair found, its best first.
+  [[nodiscard]] GraphLink with_poses(const TriedPair& pair) const {
+    const RegistrationResult& found = pair.result;
+    GraphLink link;
+    link.source = static_cast<int>(pair.source);
+    link.target = static_cast<int>(pair.target);
+    link.poses.push_back(pose_of(link, found, found.best, 1.0));
     for (const Hypothesis& other : found.alternatives) {
       if (link.poses.size() >= kMostPoses) break;
       if (other.score < kRivalShare * found.best.score) continue;
       if (other.probability && *other.probability < kHardly) continue;
       add_alternative(pose_of(link, found, other, kLooser), link);
     }
+    return link;
   }
 
   /// Whether a measured pose says something of the shift that was known least.
@@ -145,11 +148,7 @@ class GraphMaker {
   void add_measured_in_place(std::size_t k) {
     const RegistrationResult& found = pairs_[k].result;
     if (!makes_link(found, false)) return;
-    GraphLink link;
-    link.source = static_cast<int>(pairs_[k].source);
-    link.target = static_cast<int>(pairs_[k].target);
-    link.poses.push_back(pose_of(link, found, found.best, 1.0));
-    add_alternatives(found, link);
+    GraphLink link = with_poses(pairs_[k]);
     LinkPose& pose = link.poses.front();
     const double wrong = 1.0 - pose.probability;
     if (wrong > kMostWrong) return;
@@ -169,7 +168,7 @@ class GraphMaker {
     if (other.covariance.diagonal().tail<3>().maxCoeff() > square(kOtherPlaceM)) return;
     for (LinkPose& known : link.poses) {
       const Vector6d apart = misfit(known, other.target_from_source);
-      if (apart.head<3>().norm() > kOtherPlaceRad || apart.tail<3>().norm() > kOtherPlaceM) continue;
+      if (!is_one_place(apart)) continue;
       const double both = known.probability + other.probability;
       const double share = other.probability / both;
       known.covariance =

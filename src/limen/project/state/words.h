@@ -23,13 +23,16 @@ struct PairWord {
   int pose = 0;  ///< the pair's pose that is meant, its best is 0
 };
 
+/// What is believed of the poses of pairs beforehand, by source > target.
+using PairStarts = std::map<std::pair<std::size_t, std::size_t>, StartPrior>;
+
 /// Decisions by nodes.
 struct UserWords {
   std::vector<Decision> decisions;
   std::vector<std::vector<int>> nodes;  ///< of each decision; empty: a scan is not part of the project
-  std::map<std::pair<std::size_t, std::size_t>, PairWord> pairs;     ///< by source > target
-  std::set<std::pair<std::size_t, std::size_t>> floors;              ///< pairs whose floors are of one height
-  std::map<std::pair<std::size_t, std::size_t>, StartPrior> starts;  ///< where points of a pair were shown
+  std::map<std::pair<std::size_t, std::size_t>, PairWord> pairs;  ///< by source > target
+  std::set<std::pair<std::size_t, std::size_t>> floors;           ///< pairs whose floors are of one height
+  PairStarts starts;                                              ///< where points of a pair were shown
 };
 UserWords words_by_nodes(const std::vector<Decision>& decisions, const std::vector<ProjectNode>& nodes,
                          const std::vector<ProjectScan>& scans);
